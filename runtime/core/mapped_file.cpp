@@ -1,0 +1,50 @@
+#include "runtime/core/mapped_file.h"
+
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <utility>
+
+namespace coppice {
+
+Result<MappedFile> MappedFile::open(const std::string& path) {
+    int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (fd < 0) {
+        if (errno == ENOENT || errno == ENOTDIR)
+            return fail(ErrorId::file_missing, path, "", "no such file", "check the path");
+        return fail(ErrorId::file_unreadable, path, "", std::strerror(errno), "check the permissions");
+    }
+    struct stat info {};
+    if (::fstat(fd, &info) != 0 || !S_ISREG(info.st_mode)) {
+        ::close(fd);
+        return fail(ErrorId::file_missing, path, "", "not a regular file", "name a file");
+    }
+    MappedFile file;
+    if (info.st_size > 0) {
+        void* memory = ::mmap(nullptr, size_t(info.st_size), PROT_READ, MAP_PRIVATE, fd, 0);
+        int map_errno = errno;
+        ::close(fd);
+        if (memory == MAP_FAILED)
+            return fail(ErrorId::file_unreadable, path, "", std::strerror(map_errno), "free some memory");
+        file.bytes_ = {static_cast<const std::byte*>(memory), size_t(info.st_size)};
+    } else {
+        ::close(fd);
+    }
+    return file;
+}
+
+MappedFile::MappedFile(MappedFile&& other) noexcept : bytes_(std::exchange(other.bytes_, {})) {}
+
+MappedFile& MappedFile::operator=(MappedFile&& other) noexcept {
+    std::swap(bytes_, other.bytes_);
+    return *this;
+}
+
+MappedFile::~MappedFile() {
+    if (!bytes_.empty()) ::munmap(const_cast<std::byte*>(bytes_.data()), bytes_.size());
+}
+
+}  // namespace coppice

@@ -1,0 +1,132 @@
+#include "runtime/core/picture.h"
+
+#include <bit>
+#include <cctype>
+#include <cstring>
+#include "runtime/core/file.h"
+#include "runtime/core/mapped_file.h"
+
+static_assert(std::endian::native == std::endian::little, "PFM and packed files are written in place");
+
+namespace coppice {
+namespace {
+
+// Reads a header of white-space separated words; '#' starts a comment up to the end of the line.
+class HeaderReader {
+  public:
+    explicit HeaderReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
+    std::string word() {
+        while (at_ < bytes_.size()) {
+            char c = current();
+            if (c == '#')
+                while (at_ < bytes_.size() && current() != '\n') ++at_;
+            else if (std::isspace(static_cast<unsigned char>(c)))
+                ++at_;
+            else
+                break;
+        }
+        std::string text;
+        while (at_ < bytes_.size() && !std::isspace(static_cast<unsigned char>(current())) && text.size() < 32)
+            text += char(bytes_[at_++]);
+        return text;
+    }
+    // In [1, k_picture_side_limit], or 0.
+    uint32_t side() {
+        uint64_t value = 0;
+        for (char c : word()) {
+            if (c < '0' || c > '9') return 0;
+            value = value * 10 + uint64_t(c - '0');
+            if (value > k_picture_side_limit) return 0;
+        }
+        return uint32_t(value);
+    }
+    std::span<const std::byte> rest() {  // one white-space character ends the header
+        return at_ < bytes_.size() ? bytes_.subspan(at_ + 1) : std::span<const std::byte>();
+    }
+
+  private:
+    char current() const { return char(bytes_[at_]); }
+    std::span<const std::byte> bytes_;
+    size_t at_ = 0;
+};
+
+template <class P>
+Status check_shape(const std::string& path, const P& picture, size_t values, size_t channels) {
+    if (picture.width == 0 || picture.height == 0 || picture.width > k_picture_side_limit ||
+        picture.height > k_picture_side_limit || values != size_t(picture.width) * picture.height * channels)
+        return fail(ErrorId::value_out_of_range, path, "",
+                    "a picture of " + std::to_string(picture.width) + "x" + std::to_string(picture.height) +
+                        " with " + std::to_string(values) + " values",
+                    "sides from 1 to 16384 and all their values");
+    return {};
+}
+
+template <class P, class V>
+Result<P> read_header(const std::string& path, const MappedFile& file, const char* magic, size_t value_bytes,
+                      V P::*values, std::span<const std::byte>& rest) {
+    HeaderReader header(file.bytes());
+    if (header.word() != magic)
+        return fail(ErrorId::format_unknown, path, "byte 0", "not a picture we read", std::string("expected ") + magic);
+    P picture;
+    picture.width = header.side();
+    picture.height = header.side();
+    if (picture.width == 0 || picture.height == 0)
+        return fail(ErrorId::value_out_of_range, path, "header", "bad width or height", "sides from 1 to 16384");
+    header.word();
+    rest = header.rest();
+    size_t count = size_t(picture.width) * picture.height * 3;
+    if (rest.size() < count * value_bytes)
+        return fail(ErrorId::file_truncated, path, "", "the picture ends early",
+                    "expected " + std::to_string(count * value_bytes) + " bytes of pixels");
+    (picture.*values).resize(count);
+    return picture;
+}
+
+}  // namespace
+
+Status write_ppm(const std::string& path, const Picture& picture) {
+    COPPICE_CHECK(check_shape(path, picture, picture.rgba.size(), 4));
+    std::string text =
+        "P6\n" + std::to_string(picture.width) + " " + std::to_string(picture.height) + "\n255\n";
+    text.reserve(text.size() + picture.rgba.size());
+    for (size_t i = 0; i < picture.rgba.size(); i += 4)
+        text.append(reinterpret_cast<const char*>(&picture.rgba[i]), 3);
+    return write_text_file(path, text);
+}
+
+Result<Picture> read_ppm(const std::string& path) {
+    COPPICE_TRY(MappedFile file, MappedFile::open(path));
+    std::span<const std::byte> rest;
+    COPPICE_TRY(Picture picture, read_header<Picture>(path, file, "P6", 1, &Picture::rgba, rest));
+    size_t pixels = size_t(picture.width) * picture.height;
+    picture.rgba.resize(pixels * 4);
+    for (size_t i = 0; i < pixels; ++i) {
+        for (size_t c = 0; c < 3; ++c) picture.rgba[i * 4 + c] = uint8_t(rest[i * 3 + c]);
+        picture.rgba[i * 4 + 3] = 255;
+    }
+    return picture;
+}
+
+Status write_pfm(const std::string& path, const FloatPicture& picture) {
+    COPPICE_CHECK(check_shape(path, picture, picture.rgb.size(), 3));
+    std::string text =
+        "PF\n" + std::to_string(picture.width) + " " + std::to_string(picture.height) + "\n-1.0\n";
+    size_t row = size_t(picture.width) * 3;
+    for (uint32_t y = picture.height; y-- > 0;)  // rows go from the bottom in this format
+        text.append(reinterpret_cast<const char*>(&picture.rgb[y * row]), row * sizeof(float));
+    return write_text_file(path, text);
+}
+
+Result<FloatPicture> read_pfm(const std::string& path) {
+    COPPICE_TRY(MappedFile file, MappedFile::open(path));
+    std::span<const std::byte> rest;
+    COPPICE_TRY(FloatPicture picture,
+                read_header<FloatPicture>(path, file, "PF", sizeof(float), &FloatPicture::rgb, rest));
+    size_t row = size_t(picture.width) * 3;
+    for (uint32_t y = 0; y < picture.height; ++y)
+        std::memcpy(&picture.rgb[(picture.height - 1 - y) * row], rest.data() + y * row * sizeof(float),
+                    row * sizeof(float));
+    return picture;
+}
+
+}  // namespace coppice

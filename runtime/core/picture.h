@@ -1,0 +1,32 @@
+// A picture in memory, and the two formats that need no library: PPM (8 bit sRGB) and PFM (linear float).
+// The images plugin reads and writes the others where it is installed.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+#include "runtime/core/result.h"
+
+namespace coppice {
+
+// rgba: 4 bytes a pixel, sRGB-encoded colour and linear alpha, rows from the top.
+struct Picture {
+    uint32_t width = 0, height = 0;
+    std::vector<uint8_t> rgba;
+    bool empty() const { return width == 0 || height == 0; }
+};
+
+// rgb: 3 floats a pixel, linear, rows from the top.
+struct FloatPicture {
+    uint32_t width = 0, height = 0;
+    std::vector<float> rgb;
+};
+
+inline constexpr uint32_t k_picture_side_limit = 16384;
+
+// Alpha is dropped. Errors: write_failed, value_out_of_range (empty, or rgba of the wrong size).
+Status write_ppm(const std::string& path, const Picture& picture);
+Result<Picture> read_ppm(const std::string& path);
+Status write_pfm(const std::string& path, const FloatPicture& picture);
+Result<FloatPicture> read_pfm(const std::string& path);
+
+}  // namespace coppice

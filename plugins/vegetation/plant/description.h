@@ -1,0 +1,47 @@
+// A plant as an author or a modeller gives it: parts with their full geometry, and the structure where it is known.
+// This is what the cook takes in. Metres, y up, foot of the plant at the origin.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+#include "runtime/core/math.h"
+
+namespace coppice {
+
+// What a part turns into in the distance. automatic: the cook decides by shape.
+enum class PartKind : uint8_t { automatic, points, lines };
+
+struct DescriptionVertex {
+    vec3 position_plant;
+    vec3 normal_plant;  // unit
+    vec3 color_linear;  // [0, 1], textures already applied
+};
+
+// A piece of a stem, a straight cone. Consecutive pieces of one stem share their ends.
+struct SkeletonSegment {
+    vec3 begin_plant, end_plant;
+    float begin_radius_m, end_radius_m;
+    uint32_t stem;   // which stem of the plant
+    uint32_t level;  // 0 trunk, 1 branches, ...
+    vec3 color_linear;
+};
+
+struct PartDescription {
+    std::string name;
+    PartKind kind = PartKind::automatic;
+    bool leaf = false;        // two-sided and translucent (leaves, petals, grass), or opaque (bark, fruit)
+    float importance = 0.0f;  // factor on the primitive counts; 0: the cook decides by colour
+    std::vector<DescriptionVertex> vertices;
+    std::vector<uint32_t> indices;  // three a triangle, into vertices
+    // Triangles of leaf i: [element_first_triangle[i], element_first_triangle[i + 1]). Empty where leaves are not
+    // known apart; else it starts with 0 and ends with the number of triangles.
+    std::vector<uint32_t> element_first_triangle;
+    std::vector<SkeletonSegment> skeleton;  // empty where not known
+};
+
+struct PlantDescription {
+    std::string name;
+    std::vector<PartDescription> parts;
+};
+
+}  // namespace coppice

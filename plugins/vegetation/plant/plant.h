@@ -1,0 +1,75 @@
+// A packed plant in memory: a view into one mapped .plant file (or into a buffer of the same bytes), used in place.
+// Format, little-endian: header, parts, then one block each of triangle vertices, points, point owners and line
+// vertices; every block is checksummed (XXH3-64) and starts at a multiple of 64 bytes. pack.cpp writes, load.cpp reads.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include "plugins/vegetation/plant/surface.h"
+#include "runtime/core/mapped_file.h"
+#include "runtime/core/math.h"
+
+namespace coppice {
+
+// 16 bytes, what the kernels fetch in one load.
+struct PackedVertex {
+    float x_plant, y_plant, z_plant;  // m
+    uint32_t surface;                 // surface.h; the normal in plant space
+};
+static_assert(sizeof(PackedVertex) == 16);
+
+// v(d) = d^T M d for a unit direction d in plant space, M symmetric: xx yy zz xy xz yz. A least-squares fit over
+// directions of a mean projected area (m2) or length (m); never negative when evaluated by evaluate().
+struct DirectionForm {
+    std::array<float, 6> m{};
+    float evaluate(vec3 d) const;
+};
+
+enum class PackedPartKind : uint32_t { points = 0, lines = 1 };
+
+// One part, or one octree cell's share of a part. 256 bytes.
+struct PackedPart {
+    char name[32];        // UTF-8, zero-terminated
+    PackedPartKind kind;  // what stands for its triangles in the distance
+    uint32_t flags;       // bit 0: closed surface, of which only the front half can be seen; bit 1: leaf
+    float importance;     // > 0, multiplies the primitive counts
+    uint32_t first_triangle, triangle_count;  // k; in progressive order: every prefix is well spread
+    uint32_t first_point, point_count;        // n_p; progressive; 0 where kind is lines
+    uint32_t first_line, line_count;          // n_l; progressive; 0 where kind is points
+    float area_m2;           // A: sum of the triangles' areas, each side counted once
+    float line_length_m;     // l
+    float line_error_m;      // eps_l: largest distance from the surface to the lines
+    float longest_edge_m;    // of any triangle: bounds its size on screen
+    float point_radius_m;    // sqrt(A / n_p / pi): the surface one point stands for
+    float bounds_min[3], bounds_max[3];
+    DirectionForm projected_area_m2;   // of what faces the viewer: half of a closed surface
+    DirectionForm projected_length_m;  // of the lines
+    float mean_color_linear[3];
+    uint32_t reserved[21];
+};
+static_assert(sizeof(PackedPart) == 256);
+
+struct Plant {
+    std::string name;
+    Box bounds_plant;
+    uint64_t content_hash = 0;  // of the whole file
+    std::span<const PackedPart> parts;
+    std::span<const PackedVertex> triangle_vertices;  // three a triangle
+    std::span<const PackedVertex> points;
+    std::span<const uint32_t> point_owners;  // for each point, its triangle's index within the part: the blend draws
+                                             // triangles [0, t) and the points whose owner is >= t
+    std::span<const PackedVertex> line_vertices;  // two a line
+    uint32_t dropped_triangles = 0;               // zero area or not finite, left out by the cook
+    uint32_t dropped_vertices = 0;                // used by no triangle
+    std::shared_ptr<const MappedFile> file;       // keeps the spans alive; or:
+    std::shared_ptr<const std::vector<std::byte>> memory;
+};
+
+// Everything is checked before it is used: magic, version, block bounds (overflow-safe), checksums, that all ranges of
+// parts lie inside their blocks, that all positions are finite. Errors: file_*, format_unknown, value_out_of_range.
+Result<Plant> load_plant(const std::string& path);
+Result<Plant> load_plant_from_memory(std::shared_ptr<const std::vector<std::byte>> bytes, const std::string& name);
+
+}  // namespace coppice

@@ -1,0 +1,54 @@
+// Interface "coppice.terrain": height fields. Heights are bilinear between the samples of a square grid; the same
+// surface is drawn, sampled and stood upon.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+#include "runtime/core/math.h"
+#include "runtime/core/result.h"
+
+namespace coppice {
+
+struct PackedVertex;  // plugins/vegetation/plant/plant.h
+
+struct TerrainLevel {
+    uint32_t first_vertex, vertex_count;  // into Terrain::vertices, three a triangle, skirts included
+    float error_m;                        // largest vertical distance to the full grid
+};
+
+// A square piece with its levels, 0 the finest.
+struct TerrainPatch {
+    Box bounds_local;
+    uint32_t first_level, level_count;  // into Terrain::levels
+};
+
+class Terrain {
+  public:
+    virtual ~Terrain() = default;
+    // Local coordinates: metres from origin_world(). Outside the field the border's values hold.
+    virtual dvec3 origin_world() const = 0;
+    virtual Box bounds_local() const = 0;
+    virtual float height_at(float x_local, float z_local) const = 0;  // m
+    virtual vec3 normal_at(float x_local, float z_local) const = 0;   // unit
+    virtual std::span<const TerrainPatch> patches() const = 0;
+    virtual std::span<const TerrainLevel> levels() const = 0;
+    virtual std::span<const PackedVertex> vertices() const = 0;  // positions local
+    // Multiplies the ground's colour around a point, for what shades it; call before vertices() is used.
+    // amount in [0, 1]; falls off smoothly to nothing at radius_m.
+    virtual void shade(float x_local, float z_local, float radius_m, float amount) = 0;
+};
+
+inline constexpr const char* k_terrain_interface = "coppice.terrain";
+inline constexpr uint32_t k_terrain_version = 1;
+
+struct TerrainInterface {
+    uint32_t size_bytes;
+    // json: the scene's "terrain" object; base_dir: what its paths are relative to; file: for messages.
+    Result<std::shared_ptr<Terrain>> (*load)(std::string_view json, const std::string& base_dir,
+                                             const std::string& file);
+};
+
+}  // namespace coppice

@@ -1,0 +1,58 @@
+// What a plant, an eco tile, a camera and a light carry. 32 bytes a plant in three components.
+#pragma once
+#include <cstdint>
+#include "runtime/core/math.h"
+
+namespace coppice {
+
+struct PlantPosition {
+    float x_tile, y_tile, z_tile;  // m, from the tile's origin, foot of the plant
+    float scale;                   // > 0
+};
+
+// Unit quaternion, each part times 32767. Turns plant space into world space.
+struct PlantTurn {
+    int16_t x, y, z, w;
+};
+
+struct PlantModel {
+    uint32_t model;  // index into Scene::models
+    uint32_t seed;   // any well mixed bits; decides fractions of primitives
+};
+
+PlantTurn pack_turn(float x, float y, float z, float w);
+inline PlantTurn pack_turn_about_y(float angle_rad) {
+    return pack_turn(0.0f, portable_sin(angle_rad * 0.5f), 0.0f, portable_cos(angle_rad * 0.5f));
+}
+
+// Of a tile's chunk. Bounds are relative to the origin and hold all its plants at full size.
+struct Tile {
+    dvec3 origin_world;
+    Box bounds_tile;
+    float largest_plant_radius_m;
+};
+
+struct Camera {
+    dvec3 position_world{0.0, 1.7, 0.0};
+    float yaw_rad = 0.0f;    // 0 looks along -z, positive turns left (counter-clockwise seen from above)
+    float pitch_rad = 0.0f;  // positive looks up
+    float vertical_fov_rad = 1.0471976f;
+    float near_m = 0.1f;
+    vec3 forward() const;
+    vec3 right() const;
+    vec3 up() const;
+};
+
+// Sun, sky and haze. Radiances are linear, 1 is white on the screen after exposure.
+struct Light {
+    vec3 direction_to_sun = vec3(0.45f, 0.75f, 0.48f);  // normalised when used; zero: no sun
+    vec3 sun_color = vec3(3.0f, 2.75f, 2.35f);          // irradiance at a right angle, over pi
+    vec3 sky_zenith_color = vec3(0.20f, 0.38f, 0.75f);
+    vec3 sky_horizon_color = vec3(0.62f, 0.74f, 0.88f);
+    vec3 ground_color = vec3(0.10f, 0.10f, 0.06f);  // light from below
+    vec3 haze_color = vec3(0.62f, 0.72f, 0.84f);
+    float haze_density_per_m = 0.0006f;  // 0: none
+    float exposure = 1.0f;
+};
+
+}  // namespace coppice

@@ -1,0 +1,28 @@
+// What decides the level of detail of a frame.
+#pragma once
+#include <cstdint>
+
+namespace coppice {
+
+// How the projected area and length of a part are taken (ERRATA 2).
+enum class ProjectionMode : uint8_t {
+    printed,    // half the area and half the length, as in the paper
+    isotropic,  // half the area, pi/4 of the length
+    measured,   // the cook's fit for the direction of view
+};
+
+enum class RepresentationView : uint8_t {
+    lit,
+    kinds,  // colours by kind: triangles green, lines blue, points red
+};
+
+struct FrameSettings {
+    float sample_distance_px = 1.0f;  // d'; > 0. Smaller: more primitives
+    float splat_factor = 1.0f;        // c_p; the paper says 1.2 to 1.5 (docs/decisions.md)
+    ProjectionMode projection = ProjectionMode::measured;
+    bool level_of_detail = true;  // false: every triangle of everything in view
+    bool blend = true;            // false: switch from points to triangles at once
+    RepresentationView view = RepresentationView::lit;
+};
+
+}  // namespace coppice

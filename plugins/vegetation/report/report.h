@@ -1,0 +1,21 @@
+// Counts and times of one frame.
+#pragma once
+#include <cstdint>
+
+namespace coppice {
+
+struct FrameReport {
+    uint32_t tiles = 0, tiles_visible = 0;
+    uint32_t plants = 0, plants_visible = 0;
+    uint64_t triangles = 0, lines = 0, points = 0;  // drawn, of plants
+    uint64_t terrain_triangles = 0;
+    uint64_t vertices = 0;         // points + 2 lines + 3 triangles, of plants
+    uint64_t full_triangles = 0;   // of the visible plants, had all been drawn
+    uint64_t scene_triangles = 0;  // of the whole scene
+    uint64_t work_entries = 0;     // of the work list
+    uint64_t dropped_entries = 0;  // did not fit into the work list; its capacity grows for the next frame
+    double cull_ms = 0.0, lod_ms = 0.0;  // CPU
+    uint64_t gpu_bytes = 0;              // buffers held
+};
+
+}  // namespace coppice

@@ -1,0 +1,68 @@
+// What a host calls. Interface "coppice.vegetation": makes a Vegetation, which registers its systems in the host's
+// schedule and its passes in the host's frame graph. A frame of the host:
+//
+//     vegetation->set_camera(camera);  vegetation->set_settings(settings);
+//     schedule.run(world);                          // input, stream, world, cull, lod, shadow, draw, report
+//     frame_graph.record(frame.commands, frame.timestamps);
+//     ... submit; vegetation->color() then holds the picture
+//
+// One thread at a time; inside, the jobs of runtime/core/jobs.h.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <string>
+#include "plugins/vegetation/components.h"
+#include "plugins/vegetation/eco/scene.h"
+#include "plugins/vegetation/lod/settings.h"
+#include "plugins/vegetation/plant/plant.h"
+#include "plugins/vegetation/report/report.h"
+#include "runtime/ecs/schedule.h"
+#include "runtime/ecs/world.h"
+#include "runtime/frame/frame_graph.h"
+#include "runtime/gpu/device.h"
+
+namespace coppice {
+
+struct VegetationSettings {
+    const gpu::Device* device = nullptr;
+    ecs::World* world = nullptr;
+    ecs::Schedule* schedule = nullptr;
+    FrameGraph* frame_graph = nullptr;
+    uint32_t frame_slots = 2;  // frames in flight: rings are this long
+    uint32_t width = 1280, height = 720;
+};
+
+class Vegetation {
+  public:
+    virtual ~Vegetation() = default;
+
+    // plants[i] is the packed plant of scene.models[i]. Uploads geometry, makes the tiles' chunks. Replaces the scene
+    // before. Waits for the device; not for frames. Errors: limit_exceeded, device_lost.
+    virtual Status set_scene(const Scene& scene, std::vector<Plant> plants) = 0;
+    // Size of the picture; waits for the device when it changes. 1 to 16384 a side.
+    virtual Status resize(uint32_t width, uint32_t height) = 0;
+
+    virtual void set_camera(const Camera& camera) = 0;
+    virtual void set_light(const Light& light) = 0;
+    virtual void set_settings(const FrameSettings& settings) = 0;
+    // Which of the rings the next frame uses; CommandRing::Frame::slot.
+    virtual void set_slot(uint32_t slot) = 0;
+
+    // RGBA8, sRGB-encoded, width * height, rows from the top; written by the pass "resolve".
+    virtual const gpu::Buffer& color() const = 0;
+    virtual ResourceIndex color_resource() const = 0;
+    // Depth and surface words of the last frame, for tests: width * height 64-bit words (DESIGN 4).
+    virtual const gpu::Buffer& visibility() const = 0;
+    // Counts of the frame whose schedule ran last.
+    virtual const FrameReport& report() const = 0;
+};
+
+inline constexpr const char* k_vegetation_interface = "coppice.vegetation";
+inline constexpr uint32_t k_vegetation_version = 1;
+
+struct VegetationInterface {
+    uint32_t size_bytes;
+    Result<std::unique_ptr<Vegetation>> (*create)(const VegetationSettings& settings);
+};
+
+}  // namespace coppice

@@ -10,8 +10,14 @@ set(COPPICE_OUTPUT_DIR "${PROJECT_BINARY_DIR}")
 # Same results from every compiler: no fused multiply-add, no relaxed mathematics.
 function(coppice_target target)
   target_compile_features(${target} PUBLIC cxx_std_20)
+  # The runtime's shared libraries export all they declare; programs and plugins (one C entry) export nothing else.
+  get_target_property(type ${target} TYPE)
+  set(hidden -fvisibility=hidden)
+  if(type STREQUAL "SHARED_LIBRARY")
+    set(hidden -fno-semantic-interposition)
+  endif()
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wno-missing-field-initializers -ffp-contract=off
-                                           -fvisibility=hidden $<$<BOOL:${COPPICE_WERROR}>:-Werror>
+                                           ${hidden} $<$<BOOL:${COPPICE_WERROR}>:-Werror>
                                            $<$<CONFIG:Release>:-O3>)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
   target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
@@ -20,7 +26,6 @@ function(coppice_target target)
                                              -fno-sanitize-recover=undefined)
     target_link_options(${target} PUBLIC -fsanitize=${COPPICE_SANITIZE})
   endif()
-  get_target_property(type ${target} TYPE)
   if(type STREQUAL "EXECUTABLE")
     set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${COPPICE_OUTPUT_DIR}/bin
                                                INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")

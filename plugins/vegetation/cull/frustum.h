@@ -1,0 +1,28 @@
+// What the camera can see, as planes through the viewer. All coordinates are camera-relative: the viewer is the
+// origin, the axes are the world's.
+#pragma once
+#include "plugins/vegetation/components.h"
+
+namespace coppice {
+
+struct Frustum {
+    vec3 right, up, forward;       // the camera's axes, unit
+    vec3 side_normals[4];          // left, right, bottom, top; unit, pointing inside; all planes contain the origin
+    float near_m;
+    float focal_px;                // image height / (2 tan(fov / 2))
+};
+
+Frustum make_frustum(const Camera& camera, uint32_t width_px, uint32_t height_px);
+
+// Conservative: false only where nothing of the sphere can be seen.
+inline bool sees_sphere(const Frustum& frustum, vec3 center, float radius) {
+    if (glm::dot(frustum.forward, center) < frustum.near_m - radius) return false;
+    for (const vec3& normal : frustum.side_normals)
+        if (glm::dot(normal, center) < -radius) return false;
+    return true;
+}
+
+enum class Visibility { outside, across, inside };
+Visibility see_box(const Frustum& frustum, const Box& box);
+
+}  // namespace coppice

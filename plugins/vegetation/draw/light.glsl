@@ -1,0 +1,54 @@
+// The light model, linear radiance. The same model lights the ray-traced reference.
+// A leaf shows the side towards the viewer; light that falls on its other side comes through, tinted by it twice.
+// Openness, the share of sky a place sees past its own plant, weighs the sky's light, and the sun's in the mean.
+#ifndef COPPICE_LIGHT_GLSL
+#define COPPICE_LIGHT_GLSL
+
+struct Light {
+    vec4 to_sun;        // unit; w: exposure
+    vec4 sun_color;     // w: haze density, 1/m
+    vec4 zenith_color;
+    vec4 horizon_color;
+    vec4 ground_color;
+    vec4 haze_color;
+};
+
+vec3 sky_radiance(Light light, vec3 direction) {
+    float up = clamp(direction.y, 0.0, 1.0);
+    vec3 sky = mix(light.horizon_color.rgb, light.zenith_color.rgb, sqrt(up));
+    float toward = max(dot(direction, light.to_sun.xyz), 0.0);
+    float square = toward * toward, fourth = square * square, eighth = fourth * fourth;
+    return sky + light.sun_color.rgb * (0.06 * eighth + 0.25 * pow(toward, 256.0));
+}
+
+vec3 shade(Light light, vec3 normal, vec3 to_viewer, vec3 color, float openness, bool leaf) {
+    bool turned = leaf && dot(normal, to_viewer) < 0.0;
+    normal = turned ? -normal : normal;
+    float facing = dot(normal, light.to_sun.xyz);
+    float reflected = max(facing, 0.0);
+    float passed = leaf ? max(-facing, 0.0) : 0.0;
+    // Young green: what leaves let through is yellower and more saturated than what they throw back.
+    vec3 passed_color = min(color * vec3(1.25, 1.35, 0.55), vec3(1.0));
+    vec3 sun = light.sun_color.rgb * (color * reflected + passed_color * 0.8 * passed);
+    float up = 0.5 + 0.5 * normal.y;
+    vec3 sky = mix(light.ground_color.rgb, mix(light.horizon_color.rgb, light.zenith_color.rgb, 0.5), up);
+    float sun_open = openness * openness;  // a sunbeam crosses the crown once more than the mean of the sky does
+    return sun * mix(0.12, 1.0, sun_open) + color * sky * openness;
+}
+
+vec3 apply_haze(Light light, vec3 radiance, vec3 direction, float distance_m) {
+    float clear = exp(-light.sun_color.w * distance_m);
+    vec3 haze = light.haze_color.rgb;
+    return mix(haze, radiance, clear);
+}
+
+// Linear to what the screen takes, [0, 1] sRGB-encoded: a shoulder that reaches white at 4.
+vec3 present(Light light, vec3 radiance) {
+    vec3 c = radiance * light.to_sun.w;
+    c = c * (1.0 + c / 16.0) / (1.0 + c);
+    c = clamp(c * 1.35, 0.0, 1.0);
+    vec3 high = 1.055 * pow(max(c, vec3(1.0e-6)), vec3(1.0 / 2.4)) - 0.055;
+    return mix(high, c * 12.92, lessThanEqual(c, vec3(0.0031308)));
+}
+
+#endif

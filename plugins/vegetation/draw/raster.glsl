@@ -1,0 +1,97 @@
+// What the raster kernels share: the frame's constants, the work list, the transform, and the write of one pixel into
+// the visibility buffer. Lists are in DESIGN section 4; entries are written by draw/work_list.cpp (same layout).
+//
+// World coordinates are relative to the camera. A point's column and row on the image are dot(row_x, p) / w and
+// dot(row_y, p) / w with w = dot(row_w, p), its distance along the view. Depth is near / w in (0, 1]: 0 is far.
+#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
+#extension GL_EXT_shader_atomic_int64 : require
+#include "plugins/vegetation/draw/surface.glsl"
+
+layout(local_size_x_id = 0) in;
+// false: a group takes one entry and its lanes share the primitives. true: a lane takes one entry of few primitives
+// (MEASURED: many tiny instances).
+layout(constant_id = 1) const bool k_entry_a_lane = false;
+
+layout(push_constant) uniform Frame {
+    vec4 row_x;  // w: image width in pixels
+    vec4 row_y;  // w: image height in pixels
+    vec4 row_w;  // w: near distance in m
+    uint first_entry;
+    uint entry_count;
+    uint show_kinds;         // 1: colours say which kind of primitive was drawn
+    uint big_triangle_limit; // capacity of the list of big triangles
+} frame;
+
+layout(binding = 0) buffer Visibility { uint64_t visibility[]; };
+layout(binding = 1) uniform utextureBuffer vertices;  // xyz: position in plant space as float bits, w: surface
+layout(binding = 2) uniform utextureBuffer entries;   // two texels an entry
+layout(binding = 3) uniform textureBuffer instances;  // four texels an instance: rows of plant -> world, spare
+
+struct Entry {
+    uint first_vertex, count, instance, first_owner;
+    float size_px;   // splat side or line width
+    uint owner_min;
+};
+
+// The entry of this lane, false where there is none; its primitives are i = first; i < count; i += step.
+bool take_entry(out uint index, out uint first, out uint step) {
+    uint group = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
+    index = k_entry_a_lane ? group * gl_WorkGroupSize.x + gl_LocalInvocationID.x : group;
+    first = k_entry_a_lane ? 0u : gl_LocalInvocationID.x;
+    step = k_entry_a_lane ? 1u : gl_WorkGroupSize.x;
+    bool any = index < frame.entry_count;
+    index += frame.first_entry;
+    return any;
+}
+
+Entry load_entry(uint index) {
+    uvec4 a = texelFetch(entries, int(index * 2u));
+    uvec4 b = texelFetch(entries, int(index * 2u + 1u));
+    return Entry(a.x, a.y, a.z, a.w, uintBitsToFloat(b.x), b.y);
+}
+
+// Plant space -> (column * w, row * w, w), and the rotation for normals.
+struct Transform {
+    vec4 to_x, to_y, to_w;
+    vec3 turn_x, turn_y, turn_z;
+};
+
+Transform load_transform(uint instance) {
+    vec4 x = texelFetch(instances, int(instance * 4u));
+    vec4 y = texelFetch(instances, int(instance * 4u + 1u));
+    vec4 z = texelFetch(instances, int(instance * 4u + 2u));
+    Transform t;
+    t.to_x = frame.row_x.x * x + frame.row_x.y * y + frame.row_x.z * z;
+    t.to_y = frame.row_y.x * x + frame.row_y.y * y + frame.row_y.z * z;
+    t.to_w = frame.row_w.x * x + frame.row_w.y * y + frame.row_w.z * z;
+    t.turn_x = x.xyz;
+    t.turn_y = y.xyz;
+    t.turn_z = z.xyz;
+    return t;
+}
+
+// (column, row) in pixels and w.
+vec3 project(Transform t, vec3 position) {
+    vec4 p = vec4(position, 1.0);
+    float w = dot(t.to_w, p);
+    return vec3(vec2(dot(t.to_x, p), dot(t.to_y, p)) / w, w);
+}
+
+const uint k_kind_point = 0u, k_kind_line = 1u, k_kind_triangle = 2u;
+
+// Turns a surface word from plant space into world space.
+uint turn_surface(Transform t, uint surface, uint kind) {
+    vec3 n = decode_normal(surface);
+    uint turned = encode_normal(vec3(dot(t.turn_x, n), dot(t.turn_y, n), dot(t.turn_z, n)));
+    uint kind_color = kind == k_kind_point ? 0x0000f000u | 0x0001f000u : kind == k_kind_line ? 0x0f800000u : 0x007e0000u;
+    uint color = frame.show_kinds != 0u ? kind_color : surface & k_color_bits;
+    return (surface & ~(k_normal_bits | k_color_bits)) | turned | color;
+}
+
+// The nearer surface wins; ties go to the larger word, so the order of work never shows. The read spares most
+// atomics where much is hidden (MEASURED: rasterising).
+void write_pixel(ivec2 pixel, float depth, uint surface) {
+    uint index = uint(pixel.y) * uint(frame.row_x.w) + uint(pixel.x);
+    uint64_t word = uint64_t(floatBitsToUint(depth)) << 32 | uint64_t(surface);
+    if (visibility[index] < word) atomicMax(visibility[index], word);
+}

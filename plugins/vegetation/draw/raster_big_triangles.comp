@@ -1,0 +1,104 @@
+#version 460
+// Triangles from the list that raster_triangles.comp wrote: those that touch many pixels or cross the near plane.
+// The lanes of a group share one triangle: rows one after another, its pixels side by side. What lies before the near
+// plane is cut away, which leaves a triangle or two.
+#extension GL_GOOGLE_include_directive : require
+#include "plugins/vegetation/draw/raster.glsl"
+#include "plugins/vegetation/draw/scan.glsl"
+
+layout(binding = 4) readonly buffer BigTriangles {
+    uint big_count;
+    uint big_unused[3];
+    uvec2 big[];
+};
+
+struct Corner {
+    vec3 position;  // plant space
+    vec3 normal;    // world space, any length
+    vec3 color;     // linear
+    float openness;
+};
+
+Corner load_corner(Transform t, uint index, out uint surface) {
+    uvec4 v = texelFetch(vertices, int(index));
+    surface = turn_surface(t, v.w, k_kind_triangle);
+    vec3 normal = decode_normal(surface);
+    return Corner(uintBitsToFloat(v.xyz), normal / max(length(normal), 1.0e-6), decode_color_linear(surface),
+                  decode_openness(surface));
+}
+
+Corner mix_corners(Corner a, Corner b, float s) {
+    return Corner(mix(a.position, b.position, s), mix(a.normal, b.normal, s), mix(a.color, b.color, s),
+                  mix(a.openness, b.openness, s));
+}
+
+// Rounded up or down by a fixed pattern, so that slow gradients show no bands.
+uint pack_surface(vec3 normal, vec3 color, float openness, uint leaf, ivec2 pixel) {
+    float chance = fract(52.9829189 * fract(dot(vec2(pixel), vec2(0.06711056, 0.00583715))));
+    vec3 last = vec3(31.0, 63.0, 31.0);
+    vec3 low = min(floor(sqrt(clamp(color, 0.0, 1.0)) * last), last - 1.0);
+    vec3 low_value = low * low, high_value = (low + 1.0) * (low + 1.0);
+    vec3 share = (clamp(color, 0.0, 1.0) * last * last - low_value) / (high_value - low_value);
+    uvec3 level = uvec3(low + vec3(lessThan(vec3(chance), share)));
+    uint open = uint(min(openness * 7.0 + chance, 7.0));
+    return encode_normal(normal) | level.x << 12 | level.y << 17 | level.z << 23 | open << 28 | leaf;
+}
+
+void draw_triangle(Transform t, Corner corners[3], uint leaf) {
+    vec2 size = vec2(frame.row_x.w, frame.row_y.w);
+    float near_m = frame.row_w.w;
+    vec3 a = project(t, corners[0].position), b = project(t, corners[1].position), c = project(t, corners[2].position);
+    vec3 inverse_w = 1.0 / max(vec3(a.z, b.z, c.z), vec3(near_m));
+    Plane plane = plane_through(a.xy, b.xy, c.xy);
+    float low = min(min(a.y, b.y), c.y), high = max(max(a.y, b.y), c.y);
+    float row_first = max(ceil(low - 0.5), 0.0), row_last = min(ceil(high - 0.5), size.y);
+    for (float row = row_first; row < row_last; row += 1.0) {
+        vec2 span = scan_row(a.xy, b.xy, c.xy, row + 0.5);
+        float column_last = min(ceil(span.y - 0.5), size.x);
+        for (float column = max(ceil(span.x - 0.5), 0.0) + float(gl_LocalInvocationID.x); column < column_last;
+             column += float(gl_WorkGroupSize.x)) {
+            ivec2 pixel = ivec2(column, row);
+            vec3 weight = weights_at(plane, a.xy, vec2(pixel) + 0.5) * inverse_w;
+            float sum = weight.x + weight.y + weight.z;
+            vec3 share = weight / sum;  // perspective-correct
+            vec3 normal = corners[0].normal * share.x + corners[1].normal * share.y + corners[2].normal * share.z;
+            vec3 color = corners[0].color * share.x + corners[1].color * share.y + corners[2].color * share.z;
+            float openness = dot(share, vec3(corners[0].openness, corners[1].openness, corners[2].openness));
+            write_pixel(pixel, near_m * sum, pack_surface(normal, color, openness, leaf, pixel));
+        }
+    }
+}
+
+void main() {
+    uint count = min(big_count, frame.big_triangle_limit);
+    float near_m = frame.row_w.w;
+    for (uint i = gl_WorkGroupID.x; i < count; i += gl_NumWorkGroups.x) {
+        uvec2 reference = big[i];
+        Transform t = load_transform(reference.y);
+        Corner corner[3];
+        float beyond[3];  // distance past the near plane
+        uint surface, kept = 0u;
+        for (int v = 0; v < 3; ++v) {
+            corner[v] = load_corner(t, reference.x + uint(v), surface);
+            beyond[v] = dot(t.to_w, vec4(corner[v].position, 1.0)) - near_m;
+            kept |= beyond[v] >= 0.0 ? 1u << v : 0u;
+        }
+        uint leaf = surface & k_leaf_bit;
+        if (kept == 7u) {
+            draw_triangle(t, corner, leaf);
+            continue;
+        }
+        // Turn it so that the odd one out is corner 0.
+        int odd = kept == 1u || kept == 6u ? 0 : kept == 2u || kept == 5u ? 1 : 2;
+        int n1 = odd == 2 ? 0 : odd + 1, n2 = odd == 0 ? 2 : odd - 1;
+        Corner cut1 = mix_corners(corner[odd], corner[n1], clamp(beyond[odd] / (beyond[odd] - beyond[n1]), 0.0, 1.0));
+        Corner cut2 = mix_corners(corner[odd], corner[n2], clamp(beyond[odd] / (beyond[odd] - beyond[n2]), 0.0, 1.0));
+        bool one = kept == 1u || kept == 2u || kept == 4u;
+        Corner first[3] = Corner[3](one ? corner[odd] : corner[n1], one ? cut1 : corner[n2], one ? cut2 : cut1);
+        draw_triangle(t, first, leaf);
+        if (!one) {
+            Corner second[3] = Corner[3](corner[n2], cut2, cut1);
+            draw_triangle(t, second, leaf);
+        }
+    }
+}

@@ -1,0 +1,67 @@
+#version 460
+// Triangles of one instance and part, three vertices each.
+// Triangles that touch many pixels or cross the near plane are put into the list of raster_big_triangles.comp.
+#extension GL_GOOGLE_include_directive : require
+#include "plugins/vegetation/draw/raster.glsl"
+#include "plugins/vegetation/draw/scan.glsl"
+
+layout(binding = 4) buffer BigTriangles {
+    uint big_count;
+    uint big_unused[3];
+    uvec2 big[];  // first vertex, instance
+};
+
+const float k_side_limit_px = 12.0;  // longer triangles are shared by a group's lanes
+
+void main() {
+    uint index, first_item, step;
+    if (!take_entry(index, first_item, step)) return;
+    Entry entry = load_entry(index);
+    Transform t = load_transform(entry.instance);
+    vec2 size = vec2(frame.row_x.w, frame.row_y.w);
+    float near_m = frame.row_w.w;
+
+    for (uint i = first_item; i < entry.count; i += step) {
+        uint first_vertex = entry.first_vertex + i * 3u;
+        uvec4 v0 = texelFetch(vertices, int(first_vertex));
+        uvec4 v1 = texelFetch(vertices, int(first_vertex + 1u));
+        uvec4 v2 = texelFetch(vertices, int(first_vertex + 2u));
+        vec3 a = project(t, uintBitsToFloat(v0.xyz));
+        vec3 b = project(t, uintBitsToFloat(v1.xyz));
+        vec3 c = project(t, uintBitsToFloat(v2.xyz));
+        vec3 w = vec3(a.z, b.z, c.z);
+        if (all(lessThan(w, vec3(near_m)))) continue;
+        bool across = any(lessThan(w, vec3(near_m)));
+        vec2 low = min(min(a.xy, b.xy), c.xy), high = max(max(a.xy, b.xy), c.xy);
+        if (!across) {
+            // No pixel centre inside the bounds, or wholly beside the picture.
+            if (any(greaterThanEqual(ceil(low - 0.5), min(ceil(high - 0.5), size))) ||
+                any(lessThanEqual(high, vec2(0.5))))
+                continue;
+        }
+        if (across || any(greaterThan(high - low, vec2(k_side_limit_px)))) {
+            uint slot = atomicAdd(big_count, 1u);
+            if (slot < frame.big_triangle_limit) big[slot] = uvec2(first_vertex, entry.instance);
+            continue;
+        }
+        uint surface0 = turn_surface(t, v0.w, k_kind_triangle);
+        uint surface1 = turn_surface(t, v1.w, k_kind_triangle);
+        uint surface2 = turn_surface(t, v2.w, k_kind_triangle);
+        Plane plane = plane_through(a.xy, b.xy, c.xy);
+        vec3 depths = near_m / w;
+
+        float row_last = min(ceil(high.y - 0.5), size.y);
+        for (float row = max(ceil(low.y - 0.5), 0.0); row < row_last; row += 1.0) {
+            vec2 span = scan_row(a.xy, b.xy, c.xy, row + 0.5);
+            float column_last = min(ceil(span.y - 0.5), size.x);
+            for (float column = max(ceil(span.x - 0.5), 0.0); column < column_last; column += 1.0) {
+                vec3 weight = weights_at(plane, a.xy, vec2(column, row) + 0.5);
+                // So small a triangle shows one vertex a pixel, the one with the most weight.
+                uint surface = weight.x >= max(weight.y, weight.z) ? surface0
+                               : weight.y >= weight.z              ? surface1
+                                                                   : surface2;
+                write_pixel(ivec2(column, row), dot(weight, depths), surface);
+            }
+        }
+    }
+}

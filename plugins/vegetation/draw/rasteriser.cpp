@@ -1,0 +1,244 @@
+#include "plugins/vegetation/draw/rasteriser.h"
+
+#include <algorithm>
+#include <cstring>
+#include "plugins/vegetation/cull/frustum.h"
+#include "shaders/raster_big_triangles.comp.h"
+#include "shaders/raster_lines.comp.h"
+#include "shaders/raster_triangles.comp.h"
+#include "shaders/resolve.comp.h"
+#include "shaders/splat_points.comp.h"
+
+namespace coppice {
+namespace {
+
+constexpr uint32_t k_big_triangle_limit = 1u << 21;
+constexpr uint32_t k_first_instances = 1u << 14, k_first_entries = 1u << 16;
+constexpr uint32_t k_pixels_a_group = 256;  // resolve.comp's k_run
+
+struct LightBlock {
+    vec4 to_sun, sun_color, zenith_color, horizon_color, ground_color, haze_color;
+};
+
+gpu::BufferSettings device_buffer(VkDeviceSize size_bytes, const char* name) {
+    gpu::BufferSettings settings;
+    settings.size_bytes = size_bytes;
+    settings.name = name;
+    return settings;
+}
+
+gpu::BufferSettings texel_buffer(VkDeviceSize size_bytes, VkFormat format, gpu::MemoryUse memory, const char* name) {
+    gpu::BufferSettings settings = device_buffer(std::max<VkDeviceSize>(size_bytes, 16), name);
+    settings.usage |= VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT;
+    settings.texel_format = format;
+    settings.memory = memory;
+    return settings;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Rasteriser>> Rasteriser::create(const gpu::Device& device, FrameGraph& graph,
+                                                       uint32_t frame_slots, uint32_t width, uint32_t height) {
+    std::unique_ptr<Rasteriser> rasteriser(new Rasteriser(device, graph));
+    rasteriser->slots_.resize(std::max(frame_slots, 1u));
+    COPPICE_CHECK(rasteriser->make_pipelines());
+    for (uint32_t slot = 0; slot < rasteriser->slots_.size(); ++slot) {
+        gpu::BufferSettings light = device_buffer(sizeof(LightBlock), "light");
+        light.memory = gpu::MemoryUse::upload;
+        COPPICE_TRY(rasteriser->slots_[slot].light, gpu::Buffer::create(device, light));
+        COPPICE_CHECK(rasteriser->grow(slot, k_first_instances, k_first_entries));
+    }
+    COPPICE_TRY(rasteriser->big_triangles_,
+                gpu::Buffer::create(device, device_buffer(16 + 8ull * k_big_triangle_limit, "big triangles")));
+    COPPICE_CHECK(rasteriser->set_geometry({}));
+    COPPICE_CHECK(rasteriser->resize(width, height));
+    rasteriser->add_passes();
+    return rasteriser;
+}
+
+Status Rasteriser::make_pipelines() {
+    using gpu::BindingKind;
+    static constexpr BindingKind k_points[] = {BindingKind::storage, BindingKind::texel, BindingKind::texel,
+                                               BindingKind::texel, BindingKind::texel};
+    static constexpr BindingKind k_lines[] = {BindingKind::storage, BindingKind::texel, BindingKind::texel,
+                                              BindingKind::texel};
+    static constexpr BindingKind k_triangles[] = {BindingKind::storage, BindingKind::texel, BindingKind::texel,
+                                                  BindingKind::texel, BindingKind::storage};
+    static constexpr BindingKind k_resolve[] = {BindingKind::storage, BindingKind::storage, BindingKind::storage};
+    auto make = [this](const char* name, std::span<const uint32_t> spirv, std::span<const BindingKind> bindings,
+                       uint32_t constant_bytes, std::initializer_list<uint32_t> specialization) {
+        std::vector<uint32_t> values(specialization);
+        return gpu::Pipeline::create(device_, {name, spirv, bindings, constant_bytes, values});
+    };
+    uint32_t lanes = device_.limits.group_size;
+    for (uint32_t small = 0; small < 2; ++small) {
+        auto& pipelines = small ? lane_pipelines_ : group_pipelines_;
+        auto points = [&](WorkKind kind, const char* name, uint32_t side_limit, uint32_t blend) -> Status {
+            COPPICE_TRY(pipelines[size_t(kind)], make(name, k_splat_points_spirv, k_points, sizeof(RasterConstants),
+                                                      {lanes, small, side_limit, blend}));
+            return {};
+        };
+        COPPICE_CHECK(points(WorkKind::points_1, "points, one pixel", 1, 0));
+        COPPICE_CHECK(points(WorkKind::points_2, "points, up to two pixels", 2, 0));
+        COPPICE_CHECK(points(WorkKind::points_any, "points, any size", 0, 0));
+        COPPICE_CHECK(points(WorkKind::points_blend, "points, blended", 0, 1));
+        COPPICE_TRY(pipelines[size_t(WorkKind::lines)],
+                    make("lines", k_raster_lines_spirv, k_lines, sizeof(RasterConstants), {lanes, small}));
+        COPPICE_TRY(pipelines[size_t(WorkKind::triangles)], make("triangles", k_raster_triangles_spirv, k_triangles,
+                                                                 sizeof(RasterConstants), {lanes, small}));
+    }
+    COPPICE_TRY(big_pipeline_, make("big triangles", k_raster_big_triangles_spirv, k_triangles,
+                                    sizeof(RasterConstants), {lanes}));
+    COPPICE_TRY(resolve_pipeline_,
+                make("resolve", k_resolve_spirv, k_resolve, sizeof(ResolveConstants), {lanes}));
+    return {};
+}
+
+Status Rasteriser::set_geometry(const GeometryData& data) {
+    if (data.vertices.size() > device_.limits.texel_elements)
+        return fail(ErrorId::limit_exceeded, "", "geometry",
+                    std::to_string(data.vertices.size()) + " vertices in one scene",
+                    "this device takes " + std::to_string(device_.limits.texel_elements));
+    vkDeviceWaitIdle(device_.handle);
+    COPPICE_TRY(vertices_, gpu::Buffer::create(device_, texel_buffer(data.vertices.size_bytes(),
+                                                                     VK_FORMAT_R32G32B32A32_UINT,
+                                                                     gpu::MemoryUse::device, "vertices")));
+    COPPICE_TRY(owners_, gpu::Buffer::create(device_, texel_buffer(data.owners.size_bytes(), VK_FORMAT_R32_UINT,
+                                                                   gpu::MemoryUse::device, "owners")));
+    if (!data.vertices.empty()) COPPICE_CHECK(gpu::upload_now(device_, vertices_, 0, std::as_bytes(data.vertices)));
+    if (!data.owners.empty()) COPPICE_CHECK(gpu::upload_now(device_, owners_, 0, std::as_bytes(data.owners)));
+    return {};
+}
+
+Status Rasteriser::resize(uint32_t width, uint32_t height) {
+    if (width == 0 || height == 0 || width > 16384 || height > 16384)
+        return fail(ErrorId::value_out_of_range, "", "picture size",
+                    std::to_string(width) + "x" + std::to_string(height), "sides from 1 to 16384");
+    uint64_t pixels = uint64_t(width) * height;
+    if (pixels * 8 > device_.limits.storage_range_bytes)
+        return fail(ErrorId::limit_exceeded, "", "picture size", std::to_string(width) + "x" + std::to_string(height),
+                    "this device takes " + std::to_string(device_.limits.storage_range_bytes / 8) + " pixels");
+    vkDeviceWaitIdle(device_.handle);
+    COPPICE_TRY(visibility_, gpu::Buffer::create(device_, device_buffer(pixels * 8, "visibility")));
+    COPPICE_TRY(color_, gpu::Buffer::create(device_, device_buffer(pixels * 4, "color")));
+    width_ = width;
+    height_ = height;
+    return {};
+}
+
+Status Rasteriser::grow(uint32_t slot, uint32_t instance_count, uint32_t entry_count) {
+    vkDeviceWaitIdle(device_.handle);
+    uint64_t instance_limit = device_.limits.texel_elements / 4, entry_limit = device_.limits.texel_elements / 2;
+    COPPICE_TRY(slots_[slot].instances,
+                gpu::Buffer::create(device_, texel_buffer(sizeof(WorkInstance) * std::min<uint64_t>(instance_count, instance_limit),
+                                                          VK_FORMAT_R32G32B32A32_SFLOAT, gpu::MemoryUse::upload,
+                                                          "instances")));
+    COPPICE_TRY(slots_[slot].entries,
+                gpu::Buffer::create(device_, texel_buffer(sizeof(WorkEntry) * std::min<uint64_t>(entry_count, entry_limit),
+                                                          VK_FORMAT_R32G32B32A32_UINT, gpu::MemoryUse::upload,
+                                                          "entries")));
+    return {};
+}
+
+const gpu::Buffer& Rasteriser::last_binding(WorkKind kind) const {
+    return kind == WorkKind::triangles ? big_triangles_ : owners_;
+}
+
+void Rasteriser::draw(VkCommandBuffer commands, WorkKind kind) {
+    const Slot& slot = slots_[slot_];
+    const gpu::Buffer* buffers[] = {&visibility_, &vertices_, &slot.entries, &slot.instances, &last_binding(kind)};
+    std::span<const gpu::Buffer* const> bound(buffers, kind == WorkKind::lines ? 4 : 5);
+    auto dispatch = [&](const gpu::Pipeline& pipeline, WorkRange range, uint32_t entries_a_group) {
+        if (range.entry_count == 0) return;
+        RasterConstants constants = raster_;
+        constants.first_entry = range.first_entry;
+        constants.entry_count = range.entry_count;
+        pipeline.bind(commands, bound, &constants, sizeof constants);
+        pipeline.dispatch(commands, (range.entry_count - 1) / entries_a_group + 1);
+    };
+    dispatch(group_pipelines_[size_t(kind)], layout_.groups[size_t(kind)], 1);
+    dispatch(lane_pipelines_[size_t(kind)], layout_.lanes[size_t(kind)], device_.limits.group_size);
+}
+
+void Rasteriser::add_passes() {
+    visibility_resource_ = graph_.add_buffer("visibility", &visibility_);
+    big_resource_ = graph_.add_buffer("big triangles", &big_triangles_);
+    color_resource_ = graph_.add_buffer("color", &color_);
+
+    graph_.add_pass("clear",
+                    {{visibility_resource_, Access::transfer_write}, {big_resource_, Access::transfer_write}},
+                    [this](VkCommandBuffer commands) {
+                        vkCmdFillBuffer(commands, visibility_.handle(), 0, VK_WHOLE_SIZE, 0);
+                        vkCmdFillBuffer(commands, big_triangles_.handle(), 0, 16, 0);
+                    });
+    auto add_draw = [this](const char* name, WorkKind kind, std::vector<ResourceUse> uses) {
+        draw_passes_[size_t(kind)] =
+            graph_.add_pass(name, std::move(uses), [this, kind](VkCommandBuffer commands) { draw(commands, kind); });
+    };
+    add_draw("triangles", WorkKind::triangles,
+             {{visibility_resource_, Access::compute_atomic}, {big_resource_, Access::compute_read_write}});
+    big_pass_ = graph_.add_pass(
+        "big triangles", {{visibility_resource_, Access::compute_atomic}, {big_resource_, Access::compute_read}},
+        [this](VkCommandBuffer commands) {
+            const Slot& slot = slots_[slot_];
+            const gpu::Buffer* buffers[] = {&visibility_, &vertices_, &slot.entries, &slot.instances,
+                                            &big_triangles_};
+            big_pipeline_.bind(commands, buffers, &raster_, sizeof raster_);
+            big_pipeline_.dispatch(commands, device_.limits.is_cpu ? 64 : 4096);  // groups stride over the list
+        });
+    add_draw("lines", WorkKind::lines, {{visibility_resource_, Access::compute_atomic}});
+    add_draw("points 1 px", WorkKind::points_1, {{visibility_resource_, Access::compute_atomic}});
+    add_draw("points 2 px", WorkKind::points_2, {{visibility_resource_, Access::compute_atomic}});
+    add_draw("points large", WorkKind::points_any, {{visibility_resource_, Access::compute_atomic}});
+    add_draw("points blended", WorkKind::points_blend, {{visibility_resource_, Access::compute_atomic}});
+    graph_.add_pass("resolve",
+                    {{visibility_resource_, Access::compute_read}, {color_resource_, Access::compute_write}},
+                    [this](VkCommandBuffer commands) {
+                        const gpu::Buffer* buffers[] = {&visibility_, &color_, &slots_[slot_].light};
+                        resolve_pipeline_.bind(commands, buffers, &resolve_, sizeof resolve_);
+                        resolve_pipeline_.dispatch(commands, (width_ * height_ - 1) / k_pixels_a_group + 1);
+                    });
+}
+
+void Rasteriser::set_frame(uint32_t slot, const WorkList::Layout& layout, const Camera& camera, const Light& light,
+                           bool show_kinds) {
+    slot_ = slot;
+    layout_ = layout;
+    Frustum frustum = make_frustum(camera, width_, height_);
+    float half_width = 0.5f * float(width_), half_height = 0.5f * float(height_);
+    vec3 row_x = frustum.right * frustum.focal_px + frustum.forward * half_width;
+    vec3 row_y = frustum.up * -frustum.focal_px + frustum.forward * half_height;
+    raster_.row_x = vec4(row_x, float(width_));
+    raster_.row_y = vec4(row_y, float(height_));
+    raster_.row_w = vec4(frustum.forward, camera.near_m);
+    raster_.show_kinds = resolve_.show_kinds = show_kinds ? 1 : 0;
+    raster_.big_triangle_limit = k_big_triangle_limit;
+    resolve_.right = vec4(frustum.right * (1.0f / frustum.focal_px), float(width_));
+    resolve_.up = vec4(frustum.up * (1.0f / frustum.focal_px), float(height_));
+    resolve_.forward = vec4(frustum.forward, camera.near_m);
+
+    vec3 to_sun = normalize_or(light.direction_to_sun, vec3(0.0f));
+    LightBlock block{vec4(to_sun, light.exposure),
+                     vec4(light.sun_color, light.haze_density_per_m),
+                     vec4(light.sky_zenith_color, 0.0f),
+                     vec4(light.sky_horizon_color, 0.0f),
+                     vec4(light.ground_color, 0.0f),
+                     vec4(light.haze_color, 0.0f)};
+    std::memcpy(slots_[slot].light.mapped(), &block, sizeof block);
+
+    for (size_t kind = 0; kind < k_work_kinds; ++kind)
+        graph_.set_active(draw_passes_[kind],
+                          layout.groups[kind].entry_count > 0 || layout.lanes[kind].entry_count > 0);
+    size_t triangles = size_t(WorkKind::triangles);
+    graph_.set_active(big_pass_, layout.groups[triangles].entry_count > 0 || layout.lanes[triangles].entry_count > 0);
+}
+
+uint64_t Rasteriser::gpu_bytes() const {
+    uint64_t total = visibility_.size_bytes() + color_.size_bytes() + vertices_.size_bytes() + owners_.size_bytes() +
+                     big_triangles_.size_bytes();
+    for (const Slot& slot : slots_)
+        total += slot.instances.size_bytes() + slot.entries.size_bytes() + slot.light.size_bytes();
+    return total;
+}
+
+}  // namespace coppice

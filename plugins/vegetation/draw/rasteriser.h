@@ -1,0 +1,81 @@
+// Draws a work list into the visibility buffer by compute kernels and resolves it to a picture (DESIGN section 4).
+// Knows geometry, instances and entries; not plants.
+#pragma once
+#include <array>
+#include <memory>
+#include <vector>
+#include "plugins/vegetation/components.h"
+#include "plugins/vegetation/draw/work_list.h"
+#include "runtime/frame/frame_graph.h"
+#include "runtime/gpu/pipeline.h"
+
+namespace coppice {
+
+// All vertices of a scene in one buffer: triangles' (three each), points, lines' (two each); and points' owners.
+struct GeometryData {
+    std::span<const PackedVertex> vertices;
+    std::span<const uint32_t> owners;
+};
+
+class Rasteriser {
+  public:
+    static Result<std::unique_ptr<Rasteriser>> create(const gpu::Device& device, FrameGraph& graph,
+                                                      uint32_t frame_slots, uint32_t width, uint32_t height);
+
+    // Both wait for the device. Errors: limit_exceeded, device_lost.
+    Status set_geometry(const GeometryData& data);
+    Status resize(uint32_t width, uint32_t height);
+
+    // One frame: choose the slot, write into its mapped buffers, then say what was written. The passes are recorded
+    // when the frame graph is.
+    std::span<WorkInstance> instances(uint32_t slot) { return slots_[slot].instances.mapped_as<WorkInstance>(); }
+    std::span<WorkEntry> entries(uint32_t slot) { return slots_[slot].entries.mapped_as<WorkEntry>(); }
+    // Makes room for more; waits for the device. Contents are lost.
+    Status grow(uint32_t slot, uint32_t instance_count, uint32_t entry_count);
+    void set_frame(uint32_t slot, const WorkList::Layout& layout, const Camera& camera, const Light& light,
+                   bool show_kinds);
+
+    uint32_t width() const { return width_; }
+    uint32_t height() const { return height_; }
+    const gpu::Buffer& color() const { return color_; }
+    const gpu::Buffer& visibility() const { return visibility_; }
+    ResourceIndex color_resource() const { return color_resource_; }
+    uint64_t gpu_bytes() const;
+
+  private:
+    struct RasterConstants {
+        vec4 row_x, row_y, row_w;
+        uint32_t first_entry, entry_count, show_kinds, big_triangle_limit;
+    };
+    struct ResolveConstants {
+        vec4 right, up, forward;
+        uint32_t show_kinds, unused[3];
+    };
+    struct Slot {
+        gpu::Buffer instances, entries, light;
+    };
+    Rasteriser(const gpu::Device& device, FrameGraph& graph) : device_(device), graph_(graph) {}
+    Status make_pipelines();
+    void add_passes();
+    void draw(VkCommandBuffer commands, WorkKind kind);
+    const gpu::Buffer& last_binding(WorkKind kind) const;
+
+    const gpu::Device& device_;
+    FrameGraph& graph_;
+    uint32_t width_ = 0, height_ = 0;
+    gpu::Buffer visibility_, color_, vertices_, owners_, big_triangles_;
+    std::vector<Slot> slots_;
+    std::array<gpu::Pipeline, k_work_kinds> group_pipelines_, lane_pipelines_;
+    gpu::Pipeline big_pipeline_, resolve_pipeline_;
+    ResourceIndex visibility_resource_ = 0, color_resource_ = 0, big_resource_ = 0;
+    std::array<uint32_t, k_work_kinds> draw_passes_{};
+    uint32_t big_pass_ = 0;
+
+    // Of the frame about to be recorded.
+    uint32_t slot_ = 0;
+    WorkList::Layout layout_{};
+    RasterConstants raster_{};
+    ResolveConstants resolve_{};
+};
+
+}  // namespace coppice

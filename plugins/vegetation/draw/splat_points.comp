@@ -1,0 +1,42 @@
+#version 460
+// Points of one instance and part. // A point covers the square of side size_px around it, that is, every pixel whose centre lies inside: size_px^2
+// pixels in the mean, also where the side is under a pixel, so the mean coverage is exact at any size.
+#extension GL_GOOGLE_include_directive : require
+#include "plugins/vegetation/draw/raster.glsl"
+
+layout(constant_id = 2) const uint k_side_limit = 1u;  // pixels a square can touch along one axis: 1, 2, or 0: any
+layout(constant_id = 3) const bool k_blend = false;    // leaves out points whose triangle is drawn
+layout(binding = 4) uniform utextureBuffer owners;
+
+void main() {
+    uint index, first_item, step;
+    if (!take_entry(index, first_item, step)) return;
+    Entry entry = load_entry(index);
+    Transform t = load_transform(entry.instance);
+    ivec2 size = ivec2(frame.row_x.w, frame.row_y.w);
+    float half_side = entry.size_px * 0.5;
+    int side = k_side_limit > 0u ? int(k_side_limit) : min(int(ceil(entry.size_px)), 64);
+
+    for (uint i = first_item; i < entry.count; i += step) {
+        if (k_blend && texelFetch(owners, int(entry.first_owner + i)).x < entry.owner_min) continue;
+        uvec4 vertex = texelFetch(vertices, int(entry.first_vertex + i));
+        vec3 p = project(t, uintBitsToFloat(vertex.xyz));
+        // First pixel whose centre lies inside, and how many more there are along each axis.
+        vec2 low = p.xy - half_side - 0.5;
+        vec2 first = ceil(low);
+        ivec2 count = ivec2(ceil(low + entry.size_px) - first);
+        bool in_view = p.z >= frame.row_w.w && all(greaterThan(p.xy, vec2(-64.0))) &&
+                       all(lessThan(p.xy, vec2(size) + 64.0));
+        if (!in_view) continue;
+        ivec2 corner = ivec2(first);
+        uint surface = turn_surface(t, vertex.w, k_kind_point);
+        float depth = frame.row_w.w / p.z;
+        for (int y = 0; y < side; ++y)
+            for (int x = 0; x < side; ++x) {
+                ivec2 pixel = corner + ivec2(x, y);
+                if (x < count.x && y < count.y && all(greaterThanEqual(pixel, ivec2(0))) &&
+                    all(lessThan(pixel, size)))
+                    write_pixel(pixel, depth, surface);
+            }
+    }
+}

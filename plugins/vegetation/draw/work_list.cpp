@@ -1,0 +1,105 @@
+#include "plugins/vegetation/draw/work_list.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace coppice {
+namespace {
+
+size_t lane_bucket(uint32_t count) { return count <= 4 ? 0 : count <= 8 ? 1 : count <= 16 ? 2 : 3; }
+
+}  // namespace
+
+void WorkPart::clear() {
+    triangles = lines = points = 0;
+    instances_.clear();
+    for (auto& list : groups_) list.clear();
+    for (auto& buckets : lanes_)
+        for (auto& list : buckets) list.clear();
+}
+
+uint32_t WorkPart::add_instance(const WorkInstance& instance) {
+    instances_.push_back(instance);
+    return uint32_t(instances_.size() - 1);
+}
+
+void WorkPart::add_run(WorkKind kind, WorkEntry entry, uint32_t vertices_a_primitive) {
+    if (entry.count == 0) return;
+    if (entry.count <= k_primitives_a_lane) {
+        lanes_[size_t(kind)][lane_bucket(entry.count)].push_back(entry);
+        return;
+    }
+    uint32_t left = entry.count;
+    while (left > 0) {
+        entry.count = std::min(left, k_primitives_a_group);
+        groups_[size_t(kind)].push_back(entry);
+        entry.first_vertex += entry.count * vertices_a_primitive;
+        entry.first_owner += entry.count;
+        left -= entry.count;
+    }
+}
+
+void WorkPart::add_triangles(uint32_t first_vertex, uint32_t count, uint32_t instance) {
+    add_run(WorkKind::triangles, {first_vertex, count, instance, 0, 0.0f, 0, {}}, 3);
+}
+
+void WorkPart::add(const PartGeometry& geometry, const PartChoice& choice, uint32_t instance) {
+    add_triangles(geometry.first_triangle_vertex, choice.triangles, instance);
+    add_run(WorkKind::lines, {geometry.first_line_vertex, choice.lines, instance, 0, choice.line_width_px, 0, {}}, 2);
+    // A side a rounding error over a whole pixel must not cost four times the pixels.
+    constexpr float k_slack = 1.0e-3f;
+    float side = choice.splat_px;
+    WorkKind kind = choice.point_owner_min > 0 ? WorkKind::points_blend
+                    : side <= 1.0f + k_slack   ? WorkKind::points_1
+                    : side <= 2.0f + k_slack   ? WorkKind::points_2
+                                               : WorkKind::points_any;
+    add_run(kind,
+            {geometry.first_point, choice.points, instance, geometry.first_owner, side, choice.point_owner_min, {}},
+            1);
+    triangles += choice.triangles;
+    lines += choice.lines;
+    points += choice.points;
+}
+
+void WorkList::begin(size_t part_count) {
+    if (parts_.size() < part_count) parts_.resize(part_count);
+    part_count_ = part_count;
+    for (size_t i = 0; i < part_count; ++i) parts_[i].clear();
+}
+
+WorkList::Layout WorkList::gather(std::span<WorkInstance> instances, std::span<WorkEntry> entries) {
+    Layout layout;
+    first_instance_.resize(part_count_);
+    for (size_t i = 0; i < part_count_; ++i) {
+        const auto& list = parts_[i].instances_;
+        first_instance_[i] = layout.wanted_instances;
+        size_t room = instances.size() - layout.instance_count;
+        size_t taken = std::min(room, list.size());
+        if (taken) std::memcpy(&instances[layout.instance_count], list.data(), taken * sizeof(WorkInstance));
+        layout.instance_count += uint32_t(taken);
+        layout.wanted_instances += uint32_t(list.size());
+    }
+    auto append = [&](const std::vector<WorkEntry>& list, size_t part) {
+        layout.wanted_entries += uint32_t(list.size());
+        for (WorkEntry entry : list) {
+            entry.instance += first_instance_[part];
+            if (layout.entry_count >= entries.size() || entry.instance >= layout.instance_count) {
+                ++layout.dropped_entries;
+                continue;
+            }
+            entries[layout.entry_count++] = entry;
+        }
+    };
+    for (size_t kind = 0; kind < k_work_kinds; ++kind) {
+        layout.groups[kind].first_entry = layout.entry_count;
+        for (size_t i = 0; i < part_count_; ++i) append(parts_[i].groups_[kind], i);
+        layout.groups[kind].entry_count = layout.entry_count - layout.groups[kind].first_entry;
+        layout.lanes[kind].first_entry = layout.entry_count;
+        for (size_t bucket = 0; bucket < k_lane_buckets; ++bucket)
+            for (size_t i = 0; i < part_count_; ++i) append(parts_[i].lanes_[kind][bucket], i);
+        layout.lanes[kind].entry_count = layout.entry_count - layout.lanes[kind].first_entry;
+    }
+    return layout;
+}
+
+}  // namespace coppice

@@ -1,0 +1,91 @@
+// The frame's work list: what the kernels draw, written by the CPU straight into mapped buffers (DESIGN section 4).
+// Jobs fill lists of their own; gather() lays them out one behind the other, so the result does not depend on the
+// number of threads.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+#include "plugins/vegetation/lod/choose_part.h"
+
+namespace coppice {
+
+// One dispatch each. Points by the pixels a splat can touch along one axis; blend: of any size, leaving out points
+// whose triangle is drawn.
+enum class WorkKind : uint8_t { triangles, lines, points_1, points_2, points_any, points_blend };
+inline constexpr size_t k_work_kinds = 6;
+
+// 32 bytes, two texels; raster.glsl reads it.
+struct WorkEntry {
+    uint32_t first_vertex;  // in the geometry buffer
+    uint32_t count;         // primitives
+    uint32_t instance;
+    uint32_t first_owner;  // points_blend only
+    float size_px;         // splat side or line width
+    uint32_t owner_min;    // points_blend only
+    uint32_t unused[2];
+};
+static_assert(sizeof(WorkEntry) == 32);
+
+// 64 bytes, four texels: rows of the matrix from plant space to camera-relative world space.
+struct WorkInstance {
+    float rows[3][4];
+    float unused[4];
+};
+static_assert(sizeof(WorkInstance) == 64);
+
+inline constexpr uint32_t k_primitives_a_group = 256;  // larger runs are cut, so that groups are alike
+inline constexpr uint32_t k_primitives_a_lane = 32;    // runs up to this long are drawn by a single lane
+inline constexpr size_t k_lane_buckets = 4;            // up to 4, 8, 16, 32 primitives: lanes of a group are alike
+
+// A part's place in the geometry buffer.
+struct PartGeometry {
+    uint32_t first_triangle_vertex, first_point, first_line_vertex, first_owner;
+};
+
+// What one job adds. Kept from frame to frame, so that a warm frame allocates nothing.
+class WorkPart {
+  public:
+    void clear();
+    // Index of the instance within this part, for add().
+    uint32_t add_instance(const WorkInstance& instance);
+    void add(const PartGeometry& geometry, const PartChoice& choice, uint32_t instance);
+    void add_triangles(uint32_t first_vertex, uint32_t count, uint32_t instance);
+
+    uint64_t triangles = 0, lines = 0, points = 0;
+
+  private:
+    friend class WorkList;
+    void add_run(WorkKind kind, WorkEntry entry, uint32_t vertices_a_primitive);
+    std::vector<WorkInstance> instances_;
+    std::array<std::vector<WorkEntry>, k_work_kinds> groups_;
+    std::array<std::array<std::vector<WorkEntry>, k_lane_buckets>, k_work_kinds> lanes_;
+};
+
+// Where one dispatch finds its entries.
+struct WorkRange {
+    uint32_t first_entry = 0, entry_count = 0;
+};
+
+class WorkList {
+  public:
+    // Parts for that many jobs, cleared.
+    void begin(size_t part_count);
+    WorkPart& part(size_t index) { return parts_[index]; }
+
+    struct Layout {
+        std::array<WorkRange, k_work_kinds> groups, lanes;
+        uint32_t instance_count = 0, entry_count = 0;
+        uint32_t dropped_entries = 0;  // beyond the capacity of the buffers
+        uint32_t wanted_instances = 0, wanted_entries = 0;
+    };
+    // Copies all parts; entries and instances that do not fit are dropped and counted.
+    Layout gather(std::span<WorkInstance> instances, std::span<WorkEntry> entries);
+
+  private:
+    std::vector<WorkPart> parts_;
+    size_t part_count_ = 0;
+    std::vector<uint32_t> first_instance_;
+};
+
+}  // namespace coppice

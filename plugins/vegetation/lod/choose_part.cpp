@@ -1,0 +1,68 @@
+#include "plugins/vegetation/lod/choose_part.h"
+
+#include <algorithm>
+
+namespace coppice {
+namespace {
+
+uint32_t round_by_chance(float count, float chance, uint32_t limit) {
+    float rounded = std::floor(count + chance);
+    return rounded >= float(limit) ? limit : uint32_t(std::max(rounded, 0.0f));
+}
+
+PartChoice all_triangles(const PackedPart& part) {
+    PartChoice choice;
+    choice.triangles = part.triangle_count;
+    return choice;
+}
+
+}  // namespace
+
+float point_count(float projected_area_px2, float importance, const FrameSettings& settings) {
+    float d = std::max(settings.sample_distance_px, 1.0e-3f);
+    return std::min(settings.splat_factor * importance * projected_area_px2 / (d * d), 4.0e9f);
+}
+
+PartChoice choose_points(const PackedPart& part, float projected_area_px2, const FrameSettings& settings,
+                         float chance) {
+    PartChoice choice;
+    if (part.triangle_count == 0 || !(projected_area_px2 > 0.0f)) return choice;
+    float p = point_count(projected_area_px2, part.importance, settings);
+    float stored = float(part.point_count);
+    if (part.point_count == 0 || p >= 1.5f * stored || (!settings.blend && p >= stored)) return all_triangles(part);
+    choice.splat_px = std::sqrt(settings.splat_factor * projected_area_px2 / std::min(p, stored));
+    if (p < stored) {
+        choice.points = round_by_chance(p, chance, part.point_count);
+    } else {
+        choice.points = part.point_count;
+        choice.triangles =
+            round_by_chance((p - stored) / (0.5f * stored) * float(part.triangle_count), chance, part.triangle_count);
+        choice.point_owner_min = choice.triangles;
+    }
+    return choice;
+}
+
+PartChoice choose_lines(const PackedPart& part, float projected_area_px2, float projected_length_px,
+                        float pixels_per_meter, const FrameSettings& settings, float chance) {
+    PartChoice choice;
+    if (part.triangle_count == 0 || !(projected_area_px2 > 0.0f)) return choice;
+    float d = std::max(settings.sample_distance_px, 1.0e-3f);
+    float line_area_px2 = projected_length_px * d;
+    // importance makes more and thinner lines, and keeps triangles for longer
+    float q = part.importance * projected_area_px2 / line_area_px2;
+    if (part.line_count == 0 || !(line_area_px2 > 0.0f) || part.line_error_m * pixels_per_meter >= d || !(q <= 1.0f))
+        return all_triangles(part);
+    choice.lines = round_by_chance(q * float(part.line_count), chance, part.line_count);
+    choice.line_width_px = d / part.importance;
+    return choice;
+}
+
+PartChoice choose_part(const PackedPart& part, const PlantView& view, const FrameSettings& settings, float chance) {
+    if (!settings.level_of_detail) return all_triangles(part);
+    float area_px2 = projected_area_px2(part, view, settings.projection);
+    if (part.kind == PackedPartKind::points) return choose_points(part, area_px2, settings, chance);
+    float length_px = projected_length_px(part, view, settings.projection);
+    return choose_lines(part, area_px2, length_px, view.pixels_per_meter, settings, chance);
+}
+
+}  // namespace coppice

@@ -1,0 +1,36 @@
+// Which primitives of a part are drawn this frame: the paper's rules for points, lines and their blending with
+// triangles (Deussen et al. 2002, sections 5.1 to 5.3; DESIGN section 3: point_count, line_count, blend).
+#pragma once
+#include <cstdint>
+#include "plugins/vegetation/lod/project.h"
+
+namespace coppice {
+
+// Prefixes of the part's triangles, points and lines.
+struct PartChoice {
+    uint32_t triangles = 0;
+    uint32_t points = 0;
+    uint32_t lines = 0;
+    uint32_t point_owner_min = 0;  // only points whose triangle is at or past this one are drawn
+    float splat_px = 0.0f;         // side of the square a point covers
+    float line_width_px = 0.0f;
+};
+
+// p = c_p A'_p / d'^2, times importance (ERRATA 1). Not rounded; finite and >= 0 for finite input.
+float point_count(float projected_area_px2, float importance, const FrameSettings& settings);
+
+// p < n_p: the first p points. n_p <= p < 1.5 n_p (2k <= p < 3k where n_p = 2k): the first share of the triangles and
+// the points of the others. Above: all triangles. The squares the points cover add up to c_p times the projected
+// area in every case, so that the mean coverage does not depend on the representation.
+// chance in [0, 1): rounds a fraction of a point up or down.
+PartChoice choose_points(const PackedPart& part, float projected_area_px2, const FrameSettings& settings,
+                         float chance);
+
+// eps_l on the screen >= d', or q = A'_l / (l' d') > 1: all triangles. Else the first q n_l lines.
+PartChoice choose_lines(const PackedPart& part, float projected_area_px2, float projected_length_px,
+                        float pixels_per_meter, const FrameSettings& settings, float chance);
+
+// The whole decision for one part.
+PartChoice choose_part(const PackedPart& part, const PlantView& view, const FrameSettings& settings, float chance);
+
+}  // namespace coppice

@@ -25,8 +25,8 @@ namespace coppice {
 
 struct VegetationSettings {
     const gpu::Device* device = nullptr;
-    ecs::World* world = nullptr;
-    ecs::Schedule* schedule = nullptr;
+    World* world = nullptr;
+    Schedule* schedule = nullptr;
     FrameGraph* frame_graph = nullptr;
     uint32_t frame_slots = 2;  // frames in flight: rings are this long
     uint32_t width = 1280, height = 720;

@@ -11,7 +11,7 @@
 
 namespace coppice {
 
-enum class Access {
+enum class BufferAccess {
     compute_read,        // storage or texel buffer
     compute_write,       // written completely or in part, no reading
     compute_read_write,  // also atomics; passes that only add by atomics to one buffer still are ordered
@@ -26,7 +26,7 @@ using ResourceIndex = uint32_t;
 
 struct ResourceUse {
     ResourceIndex resource;
-    Access access;
+    BufferAccess access;
 };
 
 class FrameGraph {

@@ -166,7 +166,7 @@ void Rasteriser::add_passes() {
     color_resource_ = graph_.add_buffer("color", &color_);
 
     graph_.add_pass("clear",
-                    {{visibility_resource_, Access::transfer_write}, {big_resource_, Access::transfer_write}},
+                    {{visibility_resource_, BufferAccess::transfer_write}, {big_resource_, BufferAccess::transfer_write}},
                     [this](VkCommandBuffer commands) {
                         vkCmdFillBuffer(commands, visibility_.handle(), 0, VK_WHOLE_SIZE, 0);
                         vkCmdFillBuffer(commands, big_triangles_.handle(), 0, 16, 0);
@@ -176,9 +176,9 @@ void Rasteriser::add_passes() {
             graph_.add_pass(name, std::move(uses), [this, kind](VkCommandBuffer commands) { draw(commands, kind); });
     };
     add_draw("triangles", WorkKind::triangles,
-             {{visibility_resource_, Access::compute_atomic}, {big_resource_, Access::compute_read_write}});
+             {{visibility_resource_, BufferAccess::compute_atomic}, {big_resource_, BufferAccess::compute_read_write}});
     big_pass_ = graph_.add_pass(
-        "big triangles", {{visibility_resource_, Access::compute_atomic}, {big_resource_, Access::compute_read}},
+        "big triangles", {{visibility_resource_, BufferAccess::compute_atomic}, {big_resource_, BufferAccess::compute_read}},
         [this](VkCommandBuffer commands) {
             const Slot& slot = slots_[slot_];
             const gpu::Buffer* buffers[] = {&visibility_, &vertices_, &slot.entries, &slot.instances,
@@ -186,13 +186,13 @@ void Rasteriser::add_passes() {
             big_pipeline_.bind(commands, buffers, &raster_, sizeof raster_);
             big_pipeline_.dispatch(commands, device_.limits.is_cpu ? 64 : 4096);  // groups stride over the list
         });
-    add_draw("lines", WorkKind::lines, {{visibility_resource_, Access::compute_atomic}});
-    add_draw("points 1 px", WorkKind::points_1, {{visibility_resource_, Access::compute_atomic}});
-    add_draw("points 2 px", WorkKind::points_2, {{visibility_resource_, Access::compute_atomic}});
-    add_draw("points large", WorkKind::points_any, {{visibility_resource_, Access::compute_atomic}});
-    add_draw("points blended", WorkKind::points_blend, {{visibility_resource_, Access::compute_atomic}});
+    add_draw("lines", WorkKind::lines, {{visibility_resource_, BufferAccess::compute_atomic}});
+    add_draw("points 1 px", WorkKind::points_1, {{visibility_resource_, BufferAccess::compute_atomic}});
+    add_draw("points 2 px", WorkKind::points_2, {{visibility_resource_, BufferAccess::compute_atomic}});
+    add_draw("points large", WorkKind::points_any, {{visibility_resource_, BufferAccess::compute_atomic}});
+    add_draw("points blended", WorkKind::points_blend, {{visibility_resource_, BufferAccess::compute_atomic}});
     graph_.add_pass("resolve",
-                    {{visibility_resource_, Access::compute_read}, {color_resource_, Access::compute_write}},
+                    {{visibility_resource_, BufferAccess::compute_read}, {color_resource_, BufferAccess::compute_write}},
                     [this](VkCommandBuffer commands) {
                         const gpu::Buffer* buffers[] = {&visibility_, &color_, &slots_[slot_].light};
                         resolve_pipeline_.bind(commands, buffers, &resolve_, sizeof resolve_);

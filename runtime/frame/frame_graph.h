@@ -1,6 +1,6 @@
-// The passes of a frame: each declares the buffers it reads and writes and how; barriers follow from that, and a
-// timestamp section surrounds each pass. Built once, recorded every frame; a pass may be switched off for a frame and
-// then costs nothing.
+// The passes of a frame: each declares the buffers it reads and writes and how; barriers follow from that,
+// and a timestamp section surrounds each pass. Built once, recorded every frame; a pass may be switched off
+// for a frame and then costs nothing.
 #pragma once
 #include <functional>
 #include <span>
@@ -15,7 +15,8 @@ enum class BufferAccess {
     compute_read,        // storage or texel buffer
     compute_write,       // written completely or in part, no reading
     compute_read_write,  // also atomics; passes that only add by atomics to one buffer still are ordered
-    compute_atomic,      // commutative atomics only: consecutive passes with this access need no barrier between them
+    compute_atomic,  // commutative atomics only: consecutive passes with this access need no barrier between
+                     // them
     transfer_read,
     transfer_write,
     indirect_read,
@@ -31,12 +32,16 @@ struct ResourceUse {
 
 class FrameGraph {
   public:
-    // The buffer may change between frames (rings): set_buffer. The contents before the frame are taken as ready.
+    // The buffer may change between frames (rings): set_buffer. Contents that were there before the first
+    // frame are taken as ready; frames are ordered among themselves, as recorded. `buffer` is kept for the
+    // passes only.
     ResourceIndex add_buffer(const char* name, const gpu::Buffer* buffer);
     void set_buffer(ResourceIndex resource, const gpu::Buffer* buffer);
+    const gpu::Buffer* buffer(ResourceIndex resource) const;
 
     using Record = std::function<void(VkCommandBuffer)>;
-    // In order of execution. Returns the pass's index.
+    // In order of execution. Returns the pass's index. record may be empty. Barriers lie between passes: a
+    // pass of several commands on one buffer orders those itself.
     uint32_t add_pass(const char* name, std::vector<ResourceUse> uses, Record record);
     void set_active(uint32_t pass, bool active);
 
@@ -50,20 +55,25 @@ class FrameGraph {
     struct Resource {
         const char* name;
         const gpu::Buffer* buffer;
-        VkPipelineStageFlags2 write_stages, read_stages;  // since the last barrier
+        VkPipelineStageFlags2 write_stages, read_stages;  // of the last write, and of the reads after it
         VkAccessFlags2 write_access;
-        bool atomic;
+        VkPipelineStageFlags2 seen_stages;  // where barriers have made the last write visible
+        VkAccessFlags2 seen_access;
+        bool atomic;  // the last use was compute_atomic
     };
     struct Pass {
         const char* name;
         std::vector<ResourceUse> uses;
         Record record;
         bool active;
-        uint32_t barriers;
+        VkMemoryBarrier2 barrier;  // before it, in the last recording; no stages: none
     };
+    void require(const ResourceUse& use, VkMemoryBarrier2& barrier) const;
+    void note(const Pass& pass);
+    void emit(VkCommandBuffer commands, const VkMemoryBarrier2& barrier);
+
     std::vector<Resource> resources_;
     std::vector<Pass> passes_;
-    std::vector<VkBufferMemoryBarrier2> barriers_;
 };
 
 }  // namespace coppice

@@ -16,7 +16,8 @@ struct BufferSettings {
     VkBufferUsageFlags usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT |
                                VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
     MemoryUse memory = MemoryUse::device;
-    VkFormat texel_format = VK_FORMAT_UNDEFINED;  // else also a uniform texel buffer of this format, over the whole
+    VkFormat texel_format =
+        VK_FORMAT_UNDEFINED;  // else also a uniform texel buffer of this format, over the whole
     const char* name = "";
 };
 
@@ -51,7 +52,8 @@ class Buffer {
 
 // Copies bytes into a buffer through a staging buffer and waits. For loading, not for frames.
 // Requires offset + bytes <= size.
-Status upload_now(const Device& device, const Buffer& target, VkDeviceSize offset, std::span<const std::byte> bytes);
+Status upload_now(const Device& device, const Buffer& target, VkDeviceSize offset,
+                  std::span<const std::byte> bytes);
 // The other way round.
 Status read_now(const Device& device, const Buffer& source, VkDeviceSize offset, std::span<std::byte> bytes);
 

@@ -11,9 +11,9 @@ enum class BindingKind { storage, texel };  // read-write buffer; read-only texe
 struct PipelineSettings {
     const char* name = "";
     std::span<const uint32_t> spirv;
-    std::span<const BindingKind> bindings;           // binding 0, 1, ...
-    uint32_t push_constant_bytes = 0;                // at most 128
-    std::span<const uint32_t> specialization;        // constant_id 0, 1, ...; id 0 is the group size by convention
+    std::span<const BindingKind> bindings;     // binding 0, 1, ...
+    uint32_t push_constant_bytes = 0;          // at most 128
+    std::span<const uint32_t> specialization;  // constant_id 0, 1, ...; id 0 is the group size by convention
 };
 
 class Pipeline {
@@ -27,8 +27,9 @@ class Pipeline {
     // Binds pipeline, buffers (as many as bindings; texel bindings use texel_view()) and push constants.
     void bind(VkCommandBuffer commands, std::span<const Buffer* const> buffers, const void* push_constants,
               uint32_t push_constant_bytes) const;
-    // Any number of groups: laid out over x and y so that no axis exceeds the device's limit. The kernel computes its
-    // group as gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x and returns where that is >= its count.
+    // Any number of groups: laid out over x and y so that no axis exceeds the device's limit. The kernel
+    // computes its group as gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x and returns where that
+    // is >= its count.
     void dispatch(VkCommandBuffer commands, uint32_t groups) const;
     // VkDispatchIndirectCommand at offset.
     void dispatch_indirect(VkCommandBuffer commands, const Buffer& arguments, VkDeviceSize offset) const;

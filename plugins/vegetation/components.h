@@ -6,16 +6,19 @@
 namespace coppice {
 
 struct PlantPosition {
+    static constexpr const char* k_component_name = "plant position";
     float x_tile, y_tile, z_tile;  // m, from the tile's origin, foot of the plant
     float scale;                   // > 0
 };
 
 // Unit quaternion, each part times 32767. Turns plant space into world space.
 struct PlantTurn {
+    static constexpr const char* k_component_name = "plant turn";
     int16_t x, y, z, w;
 };
 
 struct PlantModel {
+    static constexpr const char* k_component_name = "plant model";
     uint32_t model;  // index into Scene::models
     uint32_t seed;   // any well mixed bits; decides fractions of primitives
 };
@@ -25,11 +28,13 @@ inline PlantTurn pack_turn_about_y(float angle_rad) {
     return pack_turn(0.0f, portable_sin(angle_rad * 0.5f), 0.0f, portable_cos(angle_rad * 0.5f));
 }
 
-// Of a tile's chunk. Bounds are relative to the origin and hold all its plants at full size.
+// Of the entity that owns a tile's chunk. Bounds are relative to the origin and hold all its plants at full size.
 struct Tile {
+    static constexpr const char* k_component_name = "tile";
     dvec3 origin_world;
     Box bounds_tile;
-    float largest_plant_radius_m;
+    float largest_plant_radius_m = 0.0f;
+    uint32_t plant_count = 0;
 };
 
 struct Camera {

@@ -67,20 +67,31 @@ void WorkList::begin(size_t part_count) {
     for (size_t i = 0; i < part_count; ++i) parts_[i].clear();
 }
 
+WorkList::Size WorkList::size() const {
+    Size size;
+    for (size_t i = 0; i < part_count_; ++i) {
+        size.instances += uint32_t(parts_[i].instances_.size());
+        for (const auto& list : parts_[i].groups_) size.entries += uint32_t(list.size());
+        for (const auto& buckets : parts_[i].lanes_)
+            for (const auto& list : buckets) size.entries += uint32_t(list.size());
+    }
+    return size;
+}
+
 WorkList::Layout WorkList::gather(std::span<WorkInstance> instances, std::span<WorkEntry> entries) {
     Layout layout;
     first_instance_.resize(part_count_);
+    uint32_t wanted_instances = 0;
     for (size_t i = 0; i < part_count_; ++i) {
         const auto& list = parts_[i].instances_;
-        first_instance_[i] = layout.wanted_instances;
+        first_instance_[i] = wanted_instances;
         size_t room = instances.size() - layout.instance_count;
         size_t taken = std::min(room, list.size());
         if (taken) std::memcpy(&instances[layout.instance_count], list.data(), taken * sizeof(WorkInstance));
         layout.instance_count += uint32_t(taken);
-        layout.wanted_instances += uint32_t(list.size());
+        wanted_instances += uint32_t(list.size());
     }
     auto append = [&](const std::vector<WorkEntry>& list, size_t part) {
-        layout.wanted_entries += uint32_t(list.size());
         for (WorkEntry entry : list) {
             entry.instance += first_instance_[part];
             if (layout.entry_count >= entries.size() || entry.instance >= layout.instance_count) {

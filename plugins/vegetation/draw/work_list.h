@@ -73,11 +73,16 @@ class WorkList {
     void begin(size_t part_count);
     WorkPart& part(size_t index) { return parts_[index]; }
 
+    struct Size {
+        uint32_t instances = 0, entries = 0;
+    };
+    // What gather() needs room for.
+    Size size() const;
+
     struct Layout {
         std::array<WorkRange, k_work_kinds> groups, lanes;
         uint32_t instance_count = 0, entry_count = 0;
         uint32_t dropped_entries = 0;  // beyond the capacity of the buffers
-        uint32_t wanted_instances = 0, wanted_entries = 0;
     };
     // Copies all parts; entries and instances that do not fit are dropped and counted.
     Layout gather(std::span<WorkInstance> instances, std::span<WorkEntry> entries);

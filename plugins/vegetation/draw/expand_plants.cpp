@@ -1,0 +1,90 @@
+#include "plugins/vegetation/draw/expand_plants.h"
+
+#include <algorithm>
+#include "runtime/core/hash.h"
+
+namespace coppice {
+namespace {
+
+// Rows of the rotation by a unit quaternion.
+struct Rotation {
+    vec3 x, y, z;
+    vec3 apply(vec3 v) const { return vec3(glm::dot(x, v), glm::dot(y, v), glm::dot(z, v)); }
+    vec3 apply_inverse(vec3 v) const { return x * v.x + y * v.y + z * v.z; }
+};
+
+Rotation rotation_of(PlantTurn turn) {
+    constexpr float k_step = 1.0f / 32767.0f;
+    float x = float(turn.x) * k_step, y = float(turn.y) * k_step, z = float(turn.z) * k_step, w = float(turn.w) * k_step;
+    return {vec3(1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
+            vec3(2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
+            vec3(2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y))};
+}
+
+WorkInstance instance_of(const Rotation& rotation, float scale, vec3 position) {
+    auto row = [scale](vec3 axis, float offset, float (&out)[4]) {
+        out[0] = axis.x * scale;
+        out[1] = axis.y * scale;
+        out[2] = axis.z * scale;
+        out[3] = offset;
+    };
+    WorkInstance instance{};
+    row(rotation.x, position.x, instance.rows[0]);
+    row(rotation.y, position.y, instance.rows[1]);
+    row(rotation.z, position.z, instance.rows[2]);
+    return instance;
+}
+
+}  // namespace
+
+ExpandCounts expand_plants(const PlantRun& run, const SceneGeometry& geometry, const Frustum& frustum,
+                           const FrameSettings& settings, WorkPart& work) {
+    ExpandCounts counts;
+    for (size_t i = 0; i < run.positions.size(); ++i) {
+        const PlantPosition& place = run.positions[i];
+        const DrawModel& model = geometry.models[run.models[i].model];
+        Rotation rotation = rotation_of(run.turns[i]);
+        vec3 position = run.origin_camera + vec3(place.x_tile, place.y_tile, place.z_tile);
+        vec3 center = position + rotation.apply(model.center_plant * place.scale);
+        if (!run.inside && !sees_sphere(frustum, center, model.radius_m * place.scale)) continue;
+        ++counts.plants_visible;
+        counts.full_triangles += model.triangle_count;
+
+        float distance_m = glm::length(center);
+        PlantView view;
+        view.pixels_per_meter = pixels_per_meter(frustum.focal_px, distance_m, frustum.near_m, place.scale);
+        view.direction_plant =
+            distance_m > 0.0f ? rotation.apply_inverse(center * (1.0f / distance_m)) : vec3(0.0f, 0.0f, -1.0f);
+        uint32_t instance = UINT32_MAX;
+        for (uint32_t p = 0; p < model.part_count; ++p) {
+            uint32_t part = model.first_part + p;
+            float chance = float(mix_bits(run.models[i].seed + p * 0x9e3779b9u) >> 8) * 0x1p-24f;
+            PartChoice choice = choose_part(geometry.parts[part], view, settings, chance);
+            if ((choice.triangles | choice.points | choice.lines) == 0) continue;
+            if (instance == UINT32_MAX) instance = work.add_instance(instance_of(rotation, place.scale, position));
+            work.add(geometry.part_geometry[part], choice, instance);
+        }
+    }
+    return counts;
+}
+
+uint64_t expand_terrain(const Terrain& terrain, uint32_t first_vertex, dvec3 camera_world, const Frustum& frustum,
+                        WorkPart& work) {
+    constexpr float k_error_px = 1.0f;
+    vec3 origin = vec3(terrain.origin_world() - camera_world);
+    uint32_t instance = work.add_instance(instance_of(rotation_of({0, 0, 0, 32767}), 1.0f, origin));
+    uint64_t triangles = 0;
+    for (const TerrainPatch& patch : terrain.patches()) {
+        Box bounds{patch.bounds_local.min + origin, patch.bounds_local.max + origin};
+        if (patch.level_count == 0 || see_box(frustum, bounds) == Visibility::outside) continue;
+        float distance_m = std::max(glm::length(glm::clamp(vec3(0.0f), bounds.min, bounds.max)), frustum.near_m);
+        auto levels = terrain.levels().subspan(patch.first_level, patch.level_count);
+        size_t level = levels.size() - 1;
+        while (level > 0 && levels[level].error_m * frustum.focal_px > k_error_px * distance_m) --level;
+        work.add_triangles(first_vertex + levels[level].first_vertex, levels[level].vertex_count / 3, instance);
+        triangles += levels[level].vertex_count / 3;
+    }
+    return triangles;
+}
+
+}  // namespace coppice

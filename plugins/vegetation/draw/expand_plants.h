@@ -1,0 +1,22 @@
+// From the plants in view to the work list: culls each, decides its parts' levels and writes what is drawn.
+#pragma once
+#include "plugins/vegetation/cull/list_tiles.h"
+#include "plugins/vegetation/draw/scene_geometry.h"
+#include "plugins/vegetation/draw/work_list.h"
+
+namespace coppice {
+
+struct ExpandCounts {
+    uint32_t plants_visible = 0;
+    uint64_t full_triangles = 0;
+};
+
+// One run, into one part of the work list. Any thread.
+ExpandCounts expand_plants(const PlantRun& run, const SceneGeometry& geometry, const Frustum& frustum,
+                           const FrameSettings& settings, WorkPart& work);
+
+// The terrain's patches in view, each at the coarsest level whose error stays under a pixel. Returns the triangles.
+uint64_t expand_terrain(const Terrain& terrain, uint32_t first_vertex, dvec3 camera_world, const Frustum& frustum,
+                        WorkPart& work);
+
+}  // namespace coppice

@@ -1,0 +1,50 @@
+#include "plugins/vegetation/draw/scene_geometry.h"
+
+namespace coppice {
+
+Result<SceneGeometry> gather_geometry(const Scene& scene, std::span<const Plant> plants) {
+    SceneGeometry geometry;
+    uint64_t vertex_count = scene.terrain ? scene.terrain->vertices().size() : 0, owner_count = 0;
+    for (const Plant& plant : plants) {
+        vertex_count += plant.triangle_vertices.size() + plant.points.size() + plant.line_vertices.size();
+        owner_count += plant.point_owners.size();
+    }
+    if (vertex_count > UINT32_MAX)
+        return fail(ErrorId::limit_exceeded, scene.path, "plants", std::to_string(vertex_count) + " vertices",
+                    "a scene may hold 4294967295 in all its models");
+    geometry.vertices.reserve(vertex_count);
+    geometry.owners.reserve(owner_count);
+    auto append = [&geometry](std::span<const PackedVertex> vertices) {
+        uint32_t first = uint32_t(geometry.vertices.size());
+        geometry.vertices.insert(geometry.vertices.end(), vertices.begin(), vertices.end());
+        return first;
+    };
+    for (size_t i = 0; i < plants.size(); ++i) {
+        const Plant& plant = plants[i];
+        DrawModel model{};
+        if (!plant.bounds_plant.empty()) {
+            model.center_plant = plant.bounds_plant.center();
+            model.radius_m = 0.5f * glm::length(plant.bounds_plant.size());
+        }
+        model.first_part = uint32_t(geometry.parts.size());
+        model.part_count = uint32_t(plant.parts.size());
+        uint32_t first_triangle_vertex = append(plant.triangle_vertices);
+        uint32_t first_point = append(plant.points);
+        uint32_t first_line_vertex = append(plant.line_vertices);
+        uint32_t first_owner = uint32_t(geometry.owners.size());
+        geometry.owners.insert(geometry.owners.end(), plant.point_owners.begin(), plant.point_owners.end());
+        for (PackedPart part : plant.parts) {
+            part.importance *= i < scene.models.size() ? scene.models[i].importance : 1.0f;
+            geometry.part_geometry.push_back({first_triangle_vertex + part.first_triangle * 3,
+                                              first_point + part.first_point, first_line_vertex + part.first_line * 2,
+                                              first_owner + part.first_point});
+            geometry.parts.push_back(part);
+            model.triangle_count += part.triangle_count;
+        }
+        geometry.models.push_back(model);
+    }
+    if (scene.terrain) geometry.first_terrain_vertex = append(scene.terrain->vertices());
+    return geometry;
+}
+
+}  // namespace coppice

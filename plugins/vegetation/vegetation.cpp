@@ -1,0 +1,189 @@
+// READ FIRST. Registers the components, systems and passes, in order of execution:
+//
+//   cull    list_tiles      cull/     tiles in view, nearest first
+//   lod     expand_plants   lod/      which primitives of each plant's parts; draw/ writes them down, in parallel
+//   draw    write_work_list draw/     the jobs' lists, one behind the other, into the mapped buffers
+//   report  count           report/   what was drawn
+//   passes  clear, triangles, big triangles, lines, points ..., resolve: draw/rasteriser.cpp
+#include "plugins/vegetation/vegetation.h"
+
+#include <chrono>
+#include "plugins/vegetation/cull/list_tiles.h"
+#include "plugins/vegetation/draw/expand_plants.h"
+#include "plugins/vegetation/draw/rasteriser.h"
+#include "runtime/core/jobs.h"
+#include "runtime/core/log.h"
+#include "runtime/plugin/plugin.h"
+
+namespace coppice {
+namespace {
+
+double now_ms() {
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+class VegetationSystems final : public Vegetation {
+  public:
+    explicit VegetationSystems(const VegetationSettings& settings) : settings_(settings) {}
+
+    Status start() {
+        COPPICE_TRY(rasteriser_, Rasteriser::create(*settings_.device, *settings_.frame_graph, settings_.frame_slots,
+                                                    settings_.width, settings_.height));
+        Schedule& schedule = *settings_.schedule;
+        schedule.add(Phase::cull, 0, "list_tiles", [this](TileList::Plants plants) { list_tiles(plants); });
+        // The runs point into the plants' columns, so this reads them too.
+        schedule.add(Phase::lod, 0, "expand_plants", [this](TileList::Plants) { expand(); });
+        schedule.add(Phase::draw, 0, "write_work_list", [this](TileList::Plants) { write_work_list(); });
+        schedule.add(Phase::report, 0, "count", [this](TileList::Plants) { count(); });
+        return {};
+    }
+
+    Status set_scene(const Scene& scene, std::vector<Plant> plants) override {
+        COPPICE_TRY(SceneGeometry geometry, gather_geometry(scene, plants));
+        COPPICE_CHECK(rasteriser_->set_geometry({geometry.vertices, geometry.owners}));
+        geometry.vertices = {};
+        geometry.owners = {};
+        for (const Entity& tile : tiles_) settings_.world->destroy(tile);
+        for (const ChunkId& chunk : chunks_) settings_.world->destroy_chunk(chunk);
+        tiles_.clear();
+        chunks_.clear();
+        geometry_ = std::move(geometry);
+        terrain_ = scene.terrain;
+        light_ = scene.light;
+        scene_triangles_ = 0;
+        for (const SceneTile& source : scene.tiles) {
+            if (source.plant_count == 0) continue;
+            Tile tile = source.tile;
+            tile.plant_count = source.plant_count;
+            Entity owner = settings_.world->create(tile);
+            auto [chunk, positions, turns, models] =
+                settings_.world->create_chunk<PlantPosition, PlantTurn, PlantModel>(source.plant_count, owner);
+            if (!chunk)
+                return fail(ErrorId::limit_exceeded, scene.path, "tiles", "no room for another tile",
+                            "place fewer plants");
+            for (uint32_t i = 0; i < source.plant_count; ++i) {
+                size_t plant = source.first_plant + i;
+                positions[i] = scene.positions[plant];
+                turns[i] = scene.turns[plant];
+                models[i] = scene.plant_models[plant];
+                if (models[i].model >= geometry_.models.size())
+                    return fail(ErrorId::value_out_of_range, scene.path, "plants",
+                                "model " + std::to_string(models[i].model),
+                                "the scene has " + std::to_string(geometry_.models.size()) + " models");
+                scene_triangles_ += geometry_.models[models[i].model].triangle_count;
+            }
+            tiles_.push_back(owner);
+            chunks_.push_back(chunk);
+        }
+        return {};
+    }
+
+    Status resize(uint32_t width, uint32_t height) override { return rasteriser_->resize(width, height); }
+    void set_camera(const Camera& camera) override { camera_ = camera; }
+    void set_light(const Light& light) override { light_ = light; }
+    void set_settings(const FrameSettings& settings) override { frame_ = settings; }
+    void set_slot(uint32_t slot) override { slot_ = slot; }
+    const gpu::Buffer& color() const override { return rasteriser_->color(); }
+    ResourceIndex color_resource() const override { return rasteriser_->color_resource(); }
+    const gpu::Buffer& visibility() const override { return rasteriser_->visibility(); }
+    const FrameReport& report() const override { return report_; }
+
+  private:
+    void list_tiles(const TileList::Plants& plants) {
+        double begin = now_ms();
+        frustum_ = make_frustum(camera_, rasteriser_->width(), rasteriser_->height());
+        tile_list_.list(plants, frustum_, camera_.position_world);
+        report_.cull_ms = now_ms() - begin;
+    }
+
+    void expand() {
+        double begin = now_ms();
+        size_t run_count = tile_list_.runs().size();
+        work_.begin(run_count + 1);  // the last one is the terrain's
+        run_counts_.assign(run_count, {});
+        parallel_for(run_count, 1, [this](size_t first, size_t last) {
+            for (size_t i = first; i < last; ++i)
+                run_counts_[i] = expand_plants(tile_list_.runs()[i], geometry_, frustum_, frame_, work_.part(i));
+        });
+        report_.terrain_triangles =
+            terrain_ ? expand_terrain(*terrain_, geometry_.first_terrain_vertex, camera_.position_world, frustum_,
+                                      work_.part(run_count))
+                     : 0;
+        report_.lod_ms = now_ms() - begin;
+    }
+
+    void write_work_list() {
+        double begin = now_ms();
+        WorkList::Size size = work_.size();
+        if (size.instances > rasteriser_->instances(slot_).size() || size.entries > rasteriser_->entries(slot_).size()) {
+            // Half as much again, so that a slowly growing list does not stop every frame. Where there is no memory for
+            // it, what fits is drawn and the rest counted as dropped.
+            if (auto grown = rasteriser_->grow(slot_, size.instances + size.instances / 2, size.entries + size.entries / 2);
+                !grown)
+                log_warning("{}", to_string(grown.error()));
+        }
+        layout_ = work_.gather(rasteriser_->instances(slot_), rasteriser_->entries(slot_));
+        rasteriser_->set_frame(slot_, layout_, camera_, light_, frame_.view == RepresentationView::kinds);
+        report_.write_ms = now_ms() - begin;
+    }
+
+    void count() {
+        report_.tiles = tile_list_.tile_count;
+        report_.tiles_visible = tile_list_.visible_tile_count;
+        report_.plants = tile_list_.plant_count;
+        report_.plants_visible = 0;
+        report_.triangles = report_.lines = report_.points = report_.full_triangles = 0;
+        for (size_t i = 0; i < run_counts_.size(); ++i) {
+            report_.plants_visible += run_counts_[i].plants_visible;
+            report_.full_triangles += run_counts_[i].full_triangles;
+            report_.triangles += work_.part(i).triangles;
+            report_.lines += work_.part(i).lines;
+            report_.points += work_.part(i).points;
+        }
+        report_.vertices = report_.points + 2 * report_.lines + 3 * report_.triangles;
+        report_.scene_triangles = scene_triangles_;
+        report_.work_entries = layout_.entry_count;
+        report_.dropped_entries = layout_.dropped_entries;
+        report_.gpu_bytes = rasteriser_->gpu_bytes();
+    }
+
+    VegetationSettings settings_;
+    std::unique_ptr<Rasteriser> rasteriser_;
+    SceneGeometry geometry_;
+    std::shared_ptr<const Terrain> terrain_;
+    std::vector<Entity> tiles_;
+    std::vector<ChunkId> chunks_;
+    uint64_t scene_triangles_ = 0;
+
+    Camera camera_;
+    Light light_;
+    FrameSettings frame_;
+    uint32_t slot_ = 0;
+
+    Frustum frustum_{};
+    TileList tile_list_;
+    WorkList work_;
+    WorkList::Layout layout_;
+    std::vector<ExpandCounts> run_counts_;
+    FrameReport report_;
+};
+
+Result<std::unique_ptr<Vegetation>> create(const VegetationSettings& settings) {
+    auto systems = std::make_unique<VegetationSystems>(settings);
+    COPPICE_CHECK(systems->start());
+    return std::unique_ptr<Vegetation>(std::move(systems));
+}
+
+constexpr VegetationInterface k_interface{sizeof(VegetationInterface), &create};
+
+int load(const CoppiceHost* host) {
+    return host->provide(host->context, k_vegetation_interface, k_vegetation_version, &k_interface);
+}
+void unload() {}
+
+constexpr CoppicePlugin k_plugin{sizeof(CoppicePlugin), COPPICE_PLUGIN_ABI, "vegetation", "0.1.0", &load, &unload};
+
+}  // namespace
+}  // namespace coppice
+
+extern "C" COPPICE_PLUGIN_EXPORT const CoppicePlugin* coppice_plugin(void) { return &coppice::k_plugin; }

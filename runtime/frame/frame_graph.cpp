@@ -92,17 +92,16 @@ void FrameGraph::require(const ResourceUse& use, VkMemoryBarrier2& barrier) cons
     const Resource& resource = resources_[use.resource];
     Scope scope = scope_of(use.access);
     if (use.access == BufferAccess::compute_atomic && resource.atomic) return;
-    if (scope.access & k_write_access) {
-        VkPipelineStageFlags2 before = resource.write_stages | resource.read_stages;
-        if (!before) return;
-        barrier.srcStageMask |= before;
-        barrier.srcAccessMask |= resource.write_access;
-    } else {
-        if (!resource.write_stages) return;
-        if (covers(resource.seen_stages, scope.stages) && covers(resource.seen_access, scope.access)) return;
+    bool writes = scope.access & k_write_access;
+    bool seen = covers(resource.seen_stages, scope.stages) && covers(resource.seen_access, scope.access);
+    bool after_write = !resource.write_stages || seen;
+    bool after_reads = !writes || covers(resource.after_reads_stages, scope.stages) || !resource.read_stages;
+    if (after_write && after_reads) return;
+    if (!after_write) {
         barrier.srcStageMask |= resource.write_stages;
         barrier.srcAccessMask |= resource.write_access;
     }
+    if (!after_reads) barrier.srcStageMask |= resource.read_stages;
     barrier.dstStageMask |= scope.stages;
     barrier.dstAccessMask |= scope.access;
 }
@@ -120,6 +119,7 @@ void FrameGraph::note(const Pass& pass) {
         Resource& resource = resources_[use.resource];
         Scope scope = scope_of(use.access);
         (scope.access & k_write_access ? resource.write_stages : resource.read_stages) |= scope.stages;
+        resource.after_reads_stages = 0;
         resource.write_access |= scope.access & k_write_access;
         if (use.access != BufferAccess::compute_atomic) resource.atomic = false;
     }
@@ -131,11 +131,13 @@ void FrameGraph::emit(VkCommandBuffer commands, const VkMemoryBarrier2& barrier)
     dependency.pMemoryBarriers = &barrier;
     vkCmdPipelineBarrier2(commands, &dependency);
     for (Resource& resource : resources_) {
-        if (!resource.write_stages || !covers(barrier.srcStageMask, resource.write_stages) ||
-            !covers(barrier.srcAccessMask, resource.write_access))
-            continue;
-        resource.seen_stages |= barrier.dstStageMask;
-        resource.seen_access |= barrier.dstAccessMask;
+        if (covers(barrier.srcStageMask, resource.write_stages) &&
+            covers(barrier.srcAccessMask, resource.write_access)) {
+            resource.seen_stages |= barrier.dstStageMask;
+            resource.seen_access |= barrier.dstAccessMask;
+        }
+        if (covers(barrier.srcStageMask, resource.read_stages))
+            resource.after_reads_stages |= barrier.dstStageMask;
     }
 }
 

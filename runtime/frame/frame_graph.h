@@ -59,7 +59,8 @@ class FrameGraph {
         VkAccessFlags2 write_access;
         VkPipelineStageFlags2 seen_stages;  // where barriers have made the last write visible
         VkAccessFlags2 seen_access;
-        bool atomic;  // the last use was compute_atomic
+        VkPipelineStageFlags2 after_reads_stages;  // where barriers have made later work wait for the reads
+        bool atomic;                               // the last use was compute_atomic
     };
     struct Pass {
         const char* name;

@@ -1,5 +1,5 @@
-// A plant as an author or a modeller gives it: parts with their full geometry, and the structure where it is known.
-// This is what the cook takes in. Metres, y up, foot of the plant at the origin.
+// A plant as an author or a modeller gives it: parts with their full geometry, and the structure where it is
+// known. This is what the cook takes in. Metres, y up, foot of the plant at the origin.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -33,8 +33,8 @@ struct PartDescription {
     float importance = 0.0f;  // factor on the primitive counts; 0: the cook decides by colour
     std::vector<DescriptionVertex> vertices;
     std::vector<uint32_t> indices;  // three a triangle, into vertices
-    // Triangles of leaf i: [element_first_triangle[i], element_first_triangle[i + 1]). Empty where leaves are not
-    // known apart; else it starts with 0 and ends with the number of triangles.
+    // Triangles of leaf i: [element_first_triangle[i], element_first_triangle[i + 1]). Empty where leaves are
+    // not known apart; else it starts with 0 and ends with the number of triangles.
     std::vector<uint32_t> element_first_triangle;
     std::vector<SkeletonSegment> skeleton;  // empty where not known
 };

@@ -1,6 +1,7 @@
-// A packed plant in memory: a view into one mapped .plant file (or into a buffer of the same bytes), used in place.
-// Format, little-endian: header, parts, then one block each of triangle vertices, points, point owners and line
-// vertices; every block is checksummed (XXH3-64) and starts at a multiple of 64 bytes. pack.cpp writes, load.cpp reads.
+// A packed plant in memory: a view into one mapped .plant file (or into a buffer of the same bytes), used in
+// place. Format, little-endian: header, parts, then one block each of triangle vertices, points, point owners
+// and line vertices; every block is checksummed (XXH3-64) and starts at a multiple of 64 bytes. pack.cpp
+// writes, load.cpp reads.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -20,8 +21,10 @@ struct PackedVertex {
 };
 static_assert(sizeof(PackedVertex) == 16);
 
-// v(d) = d^T M d for a unit direction d in plant space, M symmetric: xx yy zz xy xz yz. A least-squares fit over
-// directions of a mean projected area (m2) or length (m); never negative when evaluated by evaluate().
+// v(d) = sqrt(d^T M d) for a unit direction d in plant space, M symmetric: xx yy zz xy xz yz. A fit over
+// directions of the projected area (m2) or length (m). The root makes it exact for a flat part, a cylinder, a
+// straight line and an isotropic cloud, where a plain quadratic form is off by 5 % of the mean (stems) and 12
+// % face on (a flat part). Use evaluate(): never negative, never NaN.
 struct DirectionForm {
     std::array<float, 6> m{};
     float evaluate(vec3 d) const;
@@ -38,11 +41,11 @@ struct PackedPart {
     uint32_t first_triangle, triangle_count;  // k; in progressive order: every prefix is well spread
     uint32_t first_point, point_count;        // n_p; progressive; 0 where kind is lines
     uint32_t first_line, line_count;          // n_l; progressive; 0 where kind is points
-    float area_m2;           // A: sum of the triangles' areas, each side counted once
-    float line_length_m;     // l
-    float line_error_m;      // eps_l: largest distance from the surface to the lines
-    float longest_edge_m;    // of any triangle: bounds its size on screen
-    float point_radius_m;    // sqrt(A / n_p / pi): the surface one point stands for
+    float area_m2;                            // A: sum of the triangles' areas, each side counted once
+    float line_length_m;                      // l
+    float line_error_m;                       // eps_l: largest distance from the surface to the lines
+    float longest_edge_m;                     // of any triangle: bounds its size on screen
+    float point_radius_m;                     // sqrt(A / n_p / pi): the surface one point stands for
     float bounds_min[3], bounds_max[3];
     DirectionForm projected_area_m2;   // of what faces the viewer: half of a closed surface
     DirectionForm projected_length_m;  // of the lines
@@ -54,12 +57,13 @@ static_assert(sizeof(PackedPart) == 256);
 struct Plant {
     std::string name;
     Box bounds_plant;
-    uint64_t content_hash = 0;  // of the whole file
+    uint64_t content_hash = 0;  // of the whole file: of its head, which holds the checksums of the rest
     std::span<const PackedPart> parts;
     std::span<const PackedVertex> triangle_vertices;  // three a triangle
     std::span<const PackedVertex> points;
-    std::span<const uint32_t> point_owners;  // for each point, its triangle's index within the part: the blend draws
-                                             // triangles [0, t) and the points whose owner is >= t
+    std::span<const uint32_t>
+        point_owners;  // for each point, its triangle's index within the part: the blend draws
+                       // triangles [0, t) and the points whose owner is >= t
     std::span<const PackedVertex> line_vertices;  // two a line
     uint32_t dropped_triangles = 0;               // zero area or not finite, left out by the cook
     uint32_t dropped_vertices = 0;                // used by no triangle
@@ -67,9 +71,11 @@ struct Plant {
     std::shared_ptr<const std::vector<std::byte>> memory;
 };
 
-// Everything is checked before it is used: magic, version, block bounds (overflow-safe), checksums, that all ranges of
-// parts lie inside their blocks, that all positions are finite. Errors: file_*, format_unknown, value_out_of_range.
+// Everything is checked before it is used: magic, version, block bounds (overflow-safe), checksums, that all
+// ranges of parts lie inside their blocks, that all positions are finite. Errors: file_*, format_unknown,
+// value_out_of_range.
 Result<Plant> load_plant(const std::string& path);
-Result<Plant> load_plant_from_memory(std::shared_ptr<const std::vector<std::byte>> bytes, const std::string& name);
+Result<Plant> load_plant_from_memory(std::shared_ptr<const std::vector<std::byte>> bytes,
+                                     const std::string& name);
 
 }  // namespace coppice

@@ -15,7 +15,9 @@ uint32_t dither_level(float linear, uint32_t last, float chance) {
     return chance < share ? low + 1 : low;
 }
 
-uint32_t octahedral_level(float v) { return uint32_t(std::clamp(std::floor(v * 31.5f + 32.0f), 0.0f, 63.0f)); }
+uint32_t octahedral_level(float v) {
+    return uint32_t(std::clamp(std::floor(v * 31.5f + 32.0f), 0.0f, 63.0f));
+}
 float octahedral_value(uint32_t q) { return (float(q) - 31.5f) / 31.5f; }
 
 }  // namespace
@@ -50,7 +52,8 @@ Surface decode_surface(uint32_t bits) {
         n.z = (1.0f - std::fabs(u)) * (v < 0.0f ? -1.0f : 1.0f);
     }
     surface.normal = normalize_or(n, vec3(0, 1, 0));
-    float r = float(bits >> 12 & 31u) / 31.0f, g = float(bits >> 17 & 63u) / 63.0f, b = float(bits >> 23 & 31u) / 31.0f;
+    float r = float(bits >> 12 & 31u) / 31.0f, g = float(bits >> 17 & 63u) / 63.0f,
+          b = float(bits >> 23 & 31u) / 31.0f;
     surface.color_linear = vec3(r * r, g * g, b * b);
     surface.openness = float(bits >> 28 & 7u) / 7.0f;
     surface.leaf = (bits & 0x80000000u) != 0;

@@ -1,0 +1,281 @@
+#include "plugins/vegetation/cook/cook_plant.h"
+
+#include <algorithm>
+#include <bit>
+#include <fmt/format.h>
+#include "plugins/vegetation/cook/classify.h"
+#include "plugins/vegetation/cook/clean_mesh.h"
+#include "plugins/vegetation/cook/closed_share.h"
+#include "plugins/vegetation/cook/importance.h"
+#include "plugins/vegetation/cook/measure_projection.h"
+#include "plugins/vegetation/cook/openness.h"
+#include "plugins/vegetation/cook/space_curve.h"
+#include "plugins/vegetation/cook/trace_lines.h"
+#include "plugins/vegetation/cook/triangle_areas.h"
+#include "plugins/vegetation/cook/weld_positions.h"
+#include "plugins/vegetation/plant/pack.h"
+#include "runtime/core/hash.h"
+#include "runtime/core/jobs.h"
+#include "runtime/core/progress.h"
+
+namespace coppice {
+namespace {
+
+constexpr uint32_t k_triangle_limit = 1u << 26;  // of a plant: 3 GiB of vertices
+constexpr size_t k_grain = 1 << 13;
+
+struct CookPart {
+    SlenderPart shape;
+    bool closed;
+    double area_m2;
+    vec3 mean_color_linear;
+    float importance;
+};
+
+PackedVertex pack_vertex(vec3 position, const Surface& surface, uint32_t dither) {
+    return {position.x, position.y, position.z, encode_surface(surface, dither)};
+}
+
+void measure_area_and_color(CookPart& part) {
+    const PartDescription& mesh = part.shape.part;
+    std::vector<double> areas = triangle_areas(mesh);
+    dvec3 color(0);
+    part.area_m2 = 0.0;
+    for (size_t t = 0; t < areas.size(); ++t) {
+        part.area_m2 += areas[t];
+        for (size_t k = 0; k < 3; ++k)
+            color += dvec3(mesh.vertices[mesh.indices[3 * t + k]].color_linear) * (areas[t] / 3.0);
+    }
+    part.mean_color_linear = vec3(color * (1.0 / part.area_m2));
+}
+
+// Appends one part to the plant. seed: of this part.
+class PartPacker {
+  public:
+    PartPacker(const CookPart& part, const OpennessGrid& openness, const CookSettings& settings,
+               uint64_t seed, PlantBlocks& plant)
+        : part_(part),
+          mesh_(part.shape.part),
+          openness_(openness),
+          settings_(settings),
+          seed_(seed),
+          plant_(plant),
+          dither_seed_(uint32_t(seed)) {}
+
+    void run() {
+        copy_name(mesh_.name, packed_.name, sizeof packed_.name);
+        bool lines = mesh_.kind == PartKind::lines;
+        packed_.kind = lines ? PackedPartKind::lines : PackedPartKind::points;
+        packed_.flags = (part_.closed ? 1u : 0u) | (mesh_.leaf ? 2u : 0u);
+        packed_.importance = part_.importance;
+        packed_.area_m2 = float(part_.area_m2);
+        packed_.projected_area_m2 = fit_direction_form(projected_areas_m2(mesh_, part_.closed));
+        for (int c = 0; c < 3; ++c) packed_.mean_color_linear[c] = part_.mean_color_linear[c];
+        packed_.first_triangle = uint32_t(plant_.triangle_vertices.size() / 3);
+        packed_.first_point = uint32_t(plant_.points.size());
+        packed_.first_line = uint32_t(plant_.line_vertices.size() / 2);
+        pack_triangles();
+        if (lines)
+            pack_lines();
+        else
+            pack_points();
+        for (int axis = 0; axis < 3; ++axis) {
+            packed_.bounds_min[axis] = bounds_.min[axis];
+            packed_.bounds_max[axis] = bounds_.max[axis];
+        }
+        plant_.bounds_plant.include(bounds_);
+        plant_.parts.push_back(packed_);
+    }
+
+  private:
+    const DescriptionVertex& corner(size_t triangle, size_t k) const {
+        return mesh_.vertices[mesh_.indices[3 * triangle + k]];
+    }
+    uint32_t dither(size_t item) const { return mix_bits(uint32_t(item) ^ dither_seed_); }
+
+    void pack_triangles() {
+        size_t count = mesh_.indices.size() / 3;
+        std::vector<vec3> centers(count);
+        for (size_t t = 0; t < count; ++t)
+            centers[t] =
+                (corner(t, 0).position_plant + corner(t, 1).position_plant + corner(t, 2).position_plant) *
+                (1.0f / 3.0f);
+        curve_ = order_along_curve(centers);
+        std::vector<uint32_t> places =
+            make_prefix_order(uint32_t(count), settings_.order, hash_combine(seed_, 2));
+        triangle_order_.resize(count);
+        for (size_t i = 0; i < count; ++i) triangle_order_[i] = curve_[places[i]];
+
+        size_t first = plant_.triangle_vertices.size();
+        plant_.triangle_vertices.resize(first + 3 * count);
+        parallel_for(count, k_grain, [&](size_t begin, size_t end) {
+            for (size_t i = begin; i < end; ++i)
+                for (size_t k = 0; k < 3; ++k) {
+                    const DescriptionVertex& v = corner(triangle_order_[i], k);
+                    Surface surface{v.normal_plant, v.color_linear, openness_.at(v.position_plant),
+                                    mesh_.leaf};
+                    plant_.triangle_vertices[first + 3 * i + k] =
+                        pack_vertex(v.position_plant, surface, dither(3 * i + k));
+                }
+        });
+        packed_.triangle_count = uint32_t(count);
+        float longest_square = 0.0f;
+        for (size_t t = 0; t < count; ++t)
+            for (size_t k = 0; k < 3; ++k) {
+                vec3 edge = corner(t, (k + 1) % 3).position_plant - corner(t, k).position_plant;
+                longest_square = std::max(longest_square, glm::dot(edge, edge));
+                bounds_.include(corner(t, k).position_plant);
+            }
+        packed_.longest_edge_m = std::sqrt(longest_square);
+    }
+
+    void pack_points() {
+        SampleSettings sample{settings_.sampler, settings_.order, settings_.points_per_triangle, seed_};
+        std::vector<SampledPoint> points = sample_points(mesh_, curve_, triangle_order_, sample).points;
+        std::vector<uint32_t> place_of(triangle_order_.size());
+        for (uint32_t i = 0; i < place_of.size(); ++i) place_of[triangle_order_[i]] = i;
+        size_t first = plant_.points.size();
+        plant_.points.resize(first + points.size());
+        plant_.point_owners.resize(first + points.size());
+        parallel_for(points.size(), k_grain, [&](size_t begin, size_t end) {
+            for (size_t i = begin; i < end; ++i) {
+                const SampledPoint& point = points[i];
+                vec3 position(0), normal(0), color(0);
+                for (size_t k = 0; k < 3; ++k) {
+                    const DescriptionVertex& v = corner(point.triangle, k);
+                    position += v.position_plant * point.share[k];
+                    normal += v.normal_plant * point.share[k];
+                    color += v.color_linear * point.share[k];
+                }
+                normal = normalize_or(normal, corner(point.triangle, 0).normal_plant);
+                Surface surface{normal, color, openness_.at(position), mesh_.leaf};
+                plant_.points[first + i] = pack_vertex(position, surface, dither(i));
+                plant_.point_owners[first + i] = place_of[point.triangle];
+            }
+        });
+        packed_.point_count = uint32_t(points.size());
+        if (!points.empty())
+            packed_.point_radius_m = float(std::sqrt(part_.area_m2 / (double(points.size()) * double(k_pi))));
+    }
+
+    void pack_lines() {
+        TracedLines traced = trace_lines(mesh_, part_.shape.skeleton);
+        std::vector<vec3> centers, ends;
+        dvec3 color(0);
+        for (const TracedLine& line : traced.lines) {
+            centers.push_back((line.begin_plant + line.end_plant) * 0.5f);
+            ends.push_back(line.begin_plant);
+            ends.push_back(line.end_plant);
+            vec3 along = line.end_plant - line.begin_plant;
+            color += dvec3(line.color_linear) * double(std::sqrt(glm::dot(along, along)));
+        }
+        // Lines count by length, surface counts by area: of a part that is not equally thick everywhere the
+        // mean colour would shift. One factor a channel keeps it.
+        vec3 correction(1);
+        for (int c = 0; c < 3; ++c) {
+            double mean = color[c] / std::max(double(traced.length_m), 1e-30);
+            if (mean > 1e-6)
+                correction[c] = std::clamp(float(double(part_.mean_color_linear[c]) / mean), 0.5f, 2.0f);
+        }
+        std::vector<uint32_t> curve = order_along_curve(centers);
+        std::vector<uint32_t> places =
+            make_prefix_order(uint32_t(curve.size()), settings_.order, hash_combine(seed_, 3));
+        for (size_t i = 0; i < places.size(); ++i) {
+            const TracedLine& line = traced.lines[curve[places[i]]];
+            vec3 along = normalize_or(line.end_plant - line.begin_plant, vec3(0, 1, 0));
+            // Of a round stem each line shows one side; in the golden angle all sides come equally often.
+            float around = float(uint32_t(i) * 2654435769u >> 8) * 0x1p-24f * 2.0f * k_pi;
+            vec3 normal = rotate_about(perpendicular_to(along), along, around);
+            if (line.normal_plant != vec3(0))
+                normal = normalize_or(line.normal_plant - along * glm::dot(along, line.normal_plant), normal);
+            vec3 line_color = glm::min(line.color_linear * correction, vec3(1));
+            for (size_t k = 0; k < 2; ++k) {
+                vec3 end = k == 0 ? line.begin_plant : line.end_plant;
+                Surface surface{normal, line_color, openness_.at(end), mesh_.leaf};
+                plant_.line_vertices.push_back(pack_vertex(end, surface, dither(2 * i + k)));
+                bounds_.include(end);
+            }
+        }
+        packed_.line_count = uint32_t(traced.lines.size());
+        packed_.line_length_m = traced.length_m;
+        packed_.line_error_m = traced.error_m;
+        packed_.projected_length_m = fit_direction_form(projected_lengths_m(ends));
+    }
+
+    const CookPart& part_;
+    const PartDescription& mesh_;
+    const OpennessGrid& openness_;
+    const CookSettings& settings_;
+    uint64_t seed_;
+    PlantBlocks& plant_;
+    uint32_t dither_seed_;
+    PackedPart packed_{};
+    Box bounds_;
+    std::vector<uint32_t> curve_, triangle_order_;  // indices of the mesh's triangles
+};
+
+}  // namespace
+
+uint64_t hash_settings(const CookSettings& settings) {
+    uint64_t hash = hash_combine(k_cook_version, uint64_t(settings.sampler));
+    hash = hash_combine(hash, uint64_t(settings.order));
+    hash = hash_combine(hash, std::bit_cast<uint32_t>(settings.points_per_triangle));
+    return hash_combine(hash, settings.seed);
+}
+
+Result<std::vector<std::byte>> cook_plant(const PlantDescription& plant, const CookSettings& settings) {
+    if (!(settings.points_per_triangle > 0.0f && settings.points_per_triangle <= 64.0f))
+        return fail(ErrorId::value_out_of_range, plant.name, "points_per_triangle",
+                    fmt::format("{}", settings.points_per_triangle),
+                    "more than 0 and at most 64; the paper takes 2");
+    PlantBlocks blocks;
+    blocks.name = plant.name;
+    CleanCounts dropped;
+    std::vector<PartDescription> meshes;
+    uint64_t triangle_count = 0;
+    for (size_t i = 0; i < plant.parts.size(); ++i) {
+        std::string place = fmt::format("parts[{}] \"{}\"", i, plant.parts[i].name);
+        COPPICE_TRY(PartDescription mesh, clean_mesh(plant.parts[i], plant.name, place, dropped));
+        triangle_count += mesh.indices.size() / 3;
+        if (!mesh.indices.empty()) meshes.push_back(std::move(mesh));
+    }
+    if (meshes.empty())
+        return fail(ErrorId::value_out_of_range, plant.name, "",
+                    fmt::format("no triangle with an area ({} dropped)", dropped.dropped_triangles),
+                    "a plant needs at least one");
+    if (triangle_count > k_triangle_limit)
+        return fail(ErrorId::limit_exceeded, plant.name, "", fmt::format("{} triangles", triangle_count),
+                    fmt::format("at most {} a plant", k_triangle_limit));
+    blocks.dropped_triangles = dropped.dropped_triangles;
+    blocks.dropped_vertices = dropped.dropped_vertices;
+
+    Progress progress("cooking " + plant.name, 2 * triangle_count);
+    std::vector<std::vector<uint32_t>> welded(meshes.size());
+    std::vector<bool> closed;
+    for (size_t i = 0; i < meshes.size(); ++i) {
+        welded[i] = weld_positions(meshes[i].vertices);
+        closed.push_back(closed_share(meshes[i], welded[i]) >= k_closed_share);
+    }
+    OpennessGrid openness(meshes, closed);
+    std::vector<CookPart> parts;
+    std::vector<ColoredArea> colors;
+    for (size_t i = 0; i < meshes.size(); ++i) {
+        uint64_t steps = meshes[i].indices.size() / 3;
+        for (SlenderPart& shape : classify_part(std::move(meshes[i]), welded[i], closed[i])) {
+            CookPart part{std::move(shape), closed[i], 0.0, vec3(0), 1.0f};
+            measure_area_and_color(part);
+            colors.push_back({part.mean_color_linear, part.area_m2, part.shape.part.importance});
+            parts.push_back(std::move(part));
+        }
+        progress.advance(steps);
+    }
+    std::vector<float> importance = choose_importance(colors);
+    for (size_t i = 0; i < parts.size(); ++i) {
+        parts[i].importance = importance[i];
+        PartPacker(parts[i], openness, settings, hash_combine(settings.seed, i), blocks).run();
+        progress.advance(parts[i].shape.part.indices.size() / 3);
+    }
+    return pack_plant(blocks);
+}
+
+}  // namespace coppice

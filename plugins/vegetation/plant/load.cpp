@@ -1,0 +1,161 @@
+#include <atomic>
+#include <cstring>
+#include "plugins/vegetation/plant/format.h"
+#include "plugins/vegetation/plant/plant.h"
+#include "runtime/core/hash.h"
+#include "runtime/core/jobs.h"
+
+namespace coppice {
+namespace {
+
+constexpr const char* k_remedy = "packed plants are a cache: cook the plant again";
+constexpr const char* k_block_names[k_block_count] = {"parts", "triangle vertices", "points", "point owners",
+                                                      "line vertices"};
+constexpr uint64_t k_item_bytes[k_block_count] = {
+    sizeof(PackedPart), sizeof(PackedVertex), sizeof(PackedVertex), sizeof(uint32_t), sizeof(PackedVertex)};
+
+bool positions_finite(std::span<const PackedVertex> vertices) {
+    std::atomic<bool> finite{true};
+    parallel_for(vertices.size(), 1 << 16, [&](size_t first, size_t last) {
+        bool all = true;
+        for (size_t i = first; i < last; ++i) {
+            const PackedVertex& v = vertices[i];
+            all &= std::isfinite(v.x_plant) && std::isfinite(v.y_plant) && std::isfinite(v.z_plant);
+        }
+        if (!all) finite = false;
+    });
+    return finite;
+}
+
+bool all_finite(std::span<const float> values) {
+    for (float v : values)
+        if (!std::isfinite(v)) return false;
+    return true;
+}
+
+// Null where the part can be used, else what is wrong with it.
+const char* fault_of_part(const PackedPart& part, const Plant& plant) {
+    auto inside = [](uint64_t first, uint64_t count, uint64_t limit) {
+        return first <= limit && count <= limit - first;
+    };
+    if (std::memchr(part.name, 0, sizeof part.name) == nullptr) return "the name does not end";
+    if (part.kind != PackedPartKind::points && part.kind != PackedPartKind::lines) return "an unknown kind";
+    if (!inside(part.first_triangle, part.triangle_count, plant.triangle_vertices.size() / 3))
+        return "triangles outside the file";
+    if (!inside(part.first_point, part.point_count, plant.points.size())) return "points outside the file";
+    if (!inside(part.first_line, part.line_count, plant.line_vertices.size() / 2))
+        return "lines outside the file";
+    if (!(part.importance > 0.0f) || !std::isfinite(part.importance))
+        return "an importance that is not positive";
+    const float measures[] = {
+        part.area_m2,        part.line_length_m,        part.line_error_m,         part.longest_edge_m,
+        part.point_radius_m, part.mean_color_linear[0], part.mean_color_linear[1], part.mean_color_linear[2]};
+    for (float measure : measures)
+        if (!(measure >= 0.0f) || !std::isfinite(measure)) return "a negative or infinite measure";
+    if (!all_finite(part.bounds_min) || !all_finite(part.bounds_max) ||
+        !all_finite(part.projected_area_m2.m) || !all_finite(part.projected_length_m.m))
+        return "a value that is not finite";
+    for (uint32_t owner : plant.point_owners.subspan(part.first_point, part.point_count))
+        if (owner >= part.triangle_count) return "a point of a triangle that does not exist";
+    return nullptr;
+}
+
+Result<Plant> view_plant(std::span<const std::byte> bytes, const std::string& file) {
+    if (bytes.size() < sizeof(PlantFileHead)) {
+        if (bytes.size() < 4 || std::memcmp(bytes.data(), k_plant_magic, 4) != 0)
+            return fail(ErrorId::format_unknown, file, "", "not a packed plant", "name a .plant file");
+        return fail(ErrorId::file_truncated, file, "", "it ends inside its head", k_remedy);
+    }
+    PlantFileHead head;
+    std::memcpy(&head, bytes.data(), sizeof head);
+    if (std::memcmp(head.magic, k_plant_magic, sizeof head.magic) != 0)
+        return fail(ErrorId::format_unknown, file, "byte 0", "not a packed plant", "name a .plant file");
+    if (head.version != k_plant_version)
+        return fail(
+            ErrorId::format_unknown, file, "byte 4", "version " + std::to_string(head.version),
+            "this program reads version " + std::to_string(k_plant_version) + "; cook the plant again");
+    uint64_t checksum = head.head_checksum;
+    head.head_checksum = 0;
+    if (hash_bytes(&head, sizeof head) != checksum)
+        return fail(ErrorId::file_corrupt, file, "head", "its checksum is wrong", k_remedy);
+    if (head.file_bytes != bytes.size())
+        return fail(bytes.size() < head.file_bytes ? ErrorId::file_truncated : ErrorId::file_corrupt, file,
+                    "",
+                    "it has " + std::to_string(bytes.size()) + " bytes and announces " +
+                        std::to_string(head.file_bytes),
+                    k_remedy);
+
+    uint64_t offset = sizeof head;
+    for (uint32_t b = 0; b < k_block_count; ++b) {
+        const PlantBlockPlace& place = head.blocks[b];
+        // Checked by division first, so that no product below can wrap.
+        if (place.offset_bytes != offset || place.item_count > (bytes.size() - offset) / k_item_bytes[b])
+            return fail(ErrorId::file_corrupt, file, k_block_names[b], "the block lies outside the file",
+                        k_remedy);
+        uint64_t block_bytes = padded_to_block(place.item_count * k_item_bytes[b]);
+        if (block_bytes > bytes.size() - offset)
+            return fail(ErrorId::file_corrupt, file, k_block_names[b], "the block lies outside the file",
+                        k_remedy);
+        if (hash_bytes(bytes.data() + offset, block_bytes) != place.checksum)
+            return fail(ErrorId::file_corrupt, file, k_block_names[b], "the checksum is wrong", k_remedy);
+        offset += block_bytes;
+    }
+    if (offset != bytes.size())
+        return fail(ErrorId::file_corrupt, file, "byte " + std::to_string(offset),
+                    "bytes behind the last block", k_remedy);
+    if (std::memchr(head.name, 0, sizeof head.name) == nullptr)
+        return fail(ErrorId::value_out_of_range, file, "head", "the name does not end", k_remedy);
+
+    auto span_of = [&]<class T>(PlantBlock b, const T*) {
+        return std::span(reinterpret_cast<const T*>(bytes.data() + head.blocks[b].offset_bytes),
+                         size_t(head.blocks[b].item_count));
+    };
+    Plant plant;
+    plant.name = head.name;
+    plant.bounds_plant.min = vec3(head.bounds_min[0], head.bounds_min[1], head.bounds_min[2]);
+    plant.bounds_plant.max = vec3(head.bounds_max[0], head.bounds_max[1], head.bounds_max[2]);
+    plant.content_hash = checksum;
+    plant.parts = span_of(k_block_parts, static_cast<const PackedPart*>(nullptr));
+    plant.triangle_vertices = span_of(k_block_triangle_vertices, static_cast<const PackedVertex*>(nullptr));
+    plant.points = span_of(k_block_points, static_cast<const PackedVertex*>(nullptr));
+    plant.point_owners = span_of(k_block_point_owners, static_cast<const uint32_t*>(nullptr));
+    plant.line_vertices = span_of(k_block_line_vertices, static_cast<const PackedVertex*>(nullptr));
+    plant.dropped_triangles = head.dropped_triangles;
+    plant.dropped_vertices = head.dropped_vertices;
+
+    auto wrong = [&file](std::string place, std::string fault) {
+        return fail(ErrorId::value_out_of_range, file, std::move(place), std::move(fault), k_remedy);
+    };
+    if (plant.triangle_vertices.size() % 3 != 0) return wrong("triangle vertices", "not three a triangle");
+    if (plant.line_vertices.size() % 2 != 0) return wrong("line vertices", "not two a line");
+    if (plant.point_owners.size() != plant.points.size()) return wrong("point owners", "not one a point");
+    if (!all_finite(head.bounds_min) || !all_finite(head.bounds_max) || plant.bounds_plant.empty())
+        return wrong("head", "the bounds are not a box");
+    for (size_t i = 0; i < plant.parts.size(); ++i)
+        if (const char* fault = fault_of_part(plant.parts[i], plant))
+            return wrong("parts[" + std::to_string(i) + "]", fault);
+    if (!positions_finite(plant.triangle_vertices))
+        return wrong("triangle vertices", "a position is not finite");
+    if (!positions_finite(plant.points)) return wrong("points", "a position is not finite");
+    if (!positions_finite(plant.line_vertices)) return wrong("line vertices", "a position is not finite");
+    return plant;
+}
+
+}  // namespace
+
+Result<Plant> load_plant(const std::string& path) {
+    COPPICE_TRY(MappedFile mapped, MappedFile::open(path));
+    auto file = std::make_shared<const MappedFile>(std::move(mapped));
+    COPPICE_TRY(Plant plant, view_plant(file->bytes(), path));
+    plant.file = std::move(file);
+    return plant;
+}
+
+Result<Plant> load_plant_from_memory(std::shared_ptr<const std::vector<std::byte>> bytes,
+                                     const std::string& name) {
+    COPPICE_TRY(Plant plant, view_plant(*bytes, name));
+    plant.memory = std::move(bytes);
+    return plant;
+}
+
+}  // namespace coppice

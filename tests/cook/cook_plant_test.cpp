@@ -1,0 +1,196 @@
+#include "plugins/vegetation/cook/cook_plant.h"
+
+#include <gtest/gtest.h>
+#include "plugins/vegetation/plant/plant.h"
+#include "runtime/core/jobs.h"
+#include "tests/cook/shapes.h"
+
+namespace coppice {
+namespace {
+
+Plant cook(const PlantDescription& description, const CookSettings& settings = {}) {
+    auto bytes = cook_plant(description, settings);
+    if (!bytes) {
+        ADD_FAILURE() << to_string(bytes.error());
+        return {};
+    }
+    auto plant =
+        load_plant_from_memory(std::make_shared<const std::vector<std::byte>>(std::move(*bytes)), "cooked");
+    if (!plant) {
+        ADD_FAILURE() << to_string(plant.error());
+        return {};
+    }
+    return std::move(*plant);
+}
+
+PlantDescription small_tree() {
+    PlantDescription tree;
+    tree.name = "tree";
+    PartDescription bark;
+    bark.name = "bark";
+    shapes::add_tube(bark, shapes::straight_path(vec3(0), vec3(0, 4, 0), 20), std::vector<float>(20, 0.1f));
+    Random random(4);
+    for (int i = 0; i < 40; ++i) {
+        vec3 from(0, random.next_in(2, 4), 0);
+        shapes::add_tube(bark, shapes::straight_path(from, from + shapes::random_direction(random) * 1.5f, 8),
+                         std::vector<float>(8, 0.012f), 5);
+    }
+    tree.parts.push_back(bark);
+    tree.parts.push_back(shapes::leaf_cloud(3000, 2.0f, 0.05f, 9, vec3(0, 4, 0)));
+    return tree;
+}
+
+vec3 position_of(const PackedVertex& v) { return {v.x_plant, v.y_plant, v.z_plant}; }
+
+float distance_to_triangle_plane(vec3 p, vec3 a, vec3 b, vec3 c) {
+    return std::fabs(glm::dot(p - a, normalize_or(glm::cross(b - a, c - a), vec3(0))));
+}
+
+TEST(CookPlant, SplitsATreeIntoPointsAndLinesByThickness) {
+    Plant plant = cook(small_tree());
+    ASSERT_EQ(plant.parts.size(), 3u);
+    EXPECT_STREQ(plant.parts[0].name, "bark");
+    EXPECT_STREQ(plant.parts[1].name, "bark/8");
+    EXPECT_STREQ(plant.parts[2].name, "leaf");
+    EXPECT_EQ(plant.parts[0].kind, PackedPartKind::lines);
+    EXPECT_EQ(plant.parts[1].kind, PackedPartKind::lines);
+    EXPECT_EQ(plant.parts[2].kind, PackedPartKind::points);
+    EXPECT_NEAR(plant.parts[0].line_error_m, 0.1f, 0.005f);
+    EXPECT_NEAR(plant.parts[1].line_error_m, 0.012f, 0.001f);
+    EXPECT_NEAR(plant.parts[0].line_length_m, 4.0f, 0.05f);
+    EXPECT_NEAR(plant.parts[1].line_length_m, 60.0f, 0.5f);
+    EXPECT_EQ(plant.parts[0].flags, 1u) << "a tube is closed";
+    EXPECT_EQ(plant.parts[2].flags, 2u) << "a leaf is not";
+    EXPECT_EQ(plant.parts[2].point_count, 2 * plant.parts[2].triangle_count);
+    EXPECT_NEAR(plant.parts[2].area_m2, 3000 * 0.05f * 0.05f, 1e-3f);
+}
+
+TEST(CookPlant, EveryPointLiesOnItsOwner) {
+    Plant plant = cook(small_tree());
+    for (const PackedPart& part : plant.parts) {
+        for (uint32_t i = 0; i < part.point_count; ++i) {
+            uint32_t triangle = part.first_triangle + plant.point_owners[part.first_point + i];
+            vec3 p = position_of(plant.points[part.first_point + i]);
+            vec3 a = position_of(plant.triangle_vertices[3 * triangle]);
+            vec3 b = position_of(plant.triangle_vertices[3 * triangle + 1]);
+            vec3 c = position_of(plant.triangle_vertices[3 * triangle + 2]);
+            ASSERT_LT(distance_to_triangle_plane(p, a, b, c), 1e-5f);
+            // Inside: the three partial areas sum up to the whole.
+            auto area = [](vec3 x, vec3 y, vec3 z) {
+                vec3 n = glm::cross(y - x, z - x);
+                return std::sqrt(glm::dot(n, n));
+            };
+            ASSERT_NEAR(area(p, b, c) + area(a, p, c) + area(a, b, p), area(a, b, c),
+                        1e-3f * area(a, b, c) + 1e-7f);
+        }
+    }
+}
+
+TEST(CookPlant, KeepsTheMeanColorInEveryRepresentation) {
+    PlantDescription description = small_tree();
+    Random random(77);
+    for (PartDescription& part : description.parts)
+        for (DescriptionVertex& v : part.vertices)
+            v.color_linear =
+                vec3(random.next_in(0.05f, 0.2f), random.next_in(0.2f, 0.5f), random.next_in(0, 0.1f));
+    Plant plant = cook(description);
+    for (const PackedPart& part : plant.parts) {
+        dvec3 expected(part.mean_color_linear[0], part.mean_color_linear[1], part.mean_color_linear[2]);
+        auto expect_mean = [&](dvec3 sum, double weight, const char* what) {
+            for (int c = 0; c < 3; ++c)
+                EXPECT_NEAR(sum[c] / weight / expected[c], 1.0, 0.03) << part.name << " " << what;
+        };
+        dvec3 triangles(0), points(0), lines(0);
+        double area = 0, length = 0;
+        for (uint32_t t = part.first_triangle; t < part.first_triangle + part.triangle_count; ++t) {
+            const PackedVertex* v = &plant.triangle_vertices[3 * t];
+            vec3 n = glm::cross(position_of(v[1]) - position_of(v[0]), position_of(v[2]) - position_of(v[0]));
+            double a = double(std::sqrt(glm::dot(n, n)));
+            area += a;
+            for (int k = 0; k < 3; ++k)
+                triangles += dvec3(decode_surface(v[k].surface).color_linear) * (a / 3);
+        }
+        expect_mean(triangles, area, "triangles");
+        for (uint32_t i = 0; i < part.point_count; ++i)
+            points += dvec3(decode_surface(plant.points[part.first_point + i].surface).color_linear);
+        if (part.point_count) expect_mean(points, part.point_count, "points");
+        for (uint32_t i = part.first_line; i < part.first_line + part.line_count; ++i) {
+            const PackedVertex* v = &plant.line_vertices[2 * i];
+            vec3 along = position_of(v[1]) - position_of(v[0]);
+            double l = double(std::sqrt(glm::dot(along, along)));
+            length += l;
+            lines +=
+                dvec3(decode_surface(v[0].surface).color_linear + decode_surface(v[1].surface).color_linear) *
+                (l / 2);
+        }
+        // Few lines: the dither's noise is larger than what is asked of the mean.
+        if (part.line_count > 30) expect_mean(lines, length, "lines");
+    }
+}
+
+TEST(CookPlant, SameBytesOnOneAndTwoThreads) {
+    PlantDescription tree = small_tree();
+    set_thread_limit(1);
+    auto one = cook_plant(tree, {});
+    set_thread_limit(2);
+    auto two = cook_plant(tree, {});
+    set_thread_limit(0);
+    ASSERT_TRUE(one && two);
+    EXPECT_TRUE(*one == *two);
+}
+
+TEST(CookPlant, TakesOneTriangle) {
+    PlantDescription plant;
+    plant.name = "one";
+    plant.parts.emplace_back();
+    shapes::add_triangle(plant.parts[0], vec3(0), vec3(1, 0, 0), vec3(0, 0, 1));
+    Plant packed = cook(plant);
+    ASSERT_EQ(packed.parts.size(), 1u);
+    EXPECT_EQ(packed.parts[0].triangle_count, 1u);
+    EXPECT_EQ(packed.parts[0].point_count, 2u);
+    EXPECT_EQ(packed.point_owners[1], 0u);
+}
+
+TEST(CookPlant, TakesPlantsWithoutDepthAndPilesOfEqualTriangles) {
+    PlantDescription plant;
+    plant.name = "flat";
+    plant.parts.resize(2);
+    for (int i = 0; i < 100; ++i) {
+        shapes::add_quad(plant.parts[0], vec3(float(i % 10), 0, float(i / 10)), vec3(0, 0, 0.9f),
+                         vec3(0.9f, 0, 0));
+        shapes::add_quad(plant.parts[1], vec3(5, 0, 5), vec3(0, 0, 0.9f), vec3(0.9f, 0, 0));
+    }
+    Plant packed = cook(plant);
+    ASSERT_EQ(packed.parts.size(), 2u);
+    EXPECT_EQ(packed.parts[0].point_count, 400u);
+    EXPECT_EQ(packed.parts[1].point_count, 400u);
+    EXPECT_EQ(packed.bounds_plant.size().y, 0.0f);
+}
+
+TEST(CookPlant, LeavesEmptyPartsOutAndRefusesEmptyPlants) {
+    PlantDescription plant;
+    plant.name = "empty";
+    auto refused = cook_plant(plant, {});
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().id, ErrorId::value_out_of_range);
+    EXPECT_EQ(refused.error().file, "empty");
+    plant.parts.resize(2);
+    plant.parts[0].name = "nothing";
+    plant.parts[1].name = "something";
+    shapes::add_triangle(plant.parts[1], vec3(0), vec3(1, 0, 0), vec3(0, 0, 1));
+    Plant packed = cook(plant);
+    ASSERT_EQ(packed.parts.size(), 1u);
+    EXPECT_STREQ(packed.parts[0].name, "something");
+}
+
+TEST(CookPlant, RefusesSettingsThatCannotBeMeant) {
+    PlantDescription tree = small_tree();
+    for (float count : {0.0f, -1.0f, 65.0f, NAN}) {
+        CookSettings settings;
+        settings.points_per_triangle = count;
+        EXPECT_FALSE(cook_plant(tree, settings));
+    }
+}
+
+}  // namespace
+}  // namespace coppice

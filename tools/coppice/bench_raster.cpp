@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <vector>
+#include "plugins/vegetation/cull/frustum.h"
 #include "plugins/vegetation/draw/rasteriser.h"
 #include "runtime/core/random.h"
 

@@ -1,0 +1,94 @@
+// `coppice bench`: figures of one kind, with what they are to reach.
+#include "tools/coppice/bench.h"
+
+#include <algorithm>
+#include <memory>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include "runtime/core/file.h"
+#include "tools/coppice/bench_ecs.h"
+#include "tools/coppice/bench_raster.h"
+#include "tools/coppice/bench_scenes.h"
+#include "tools/coppice/command.h"
+
+namespace coppice {
+namespace {
+
+struct BenchCommand {
+    std::string name, json_file;
+    BenchSettings settings;
+    bool strict = false;
+};
+
+std::string list_benches() {
+    std::string text = "\nBenchmarks:\n";
+    for (const Bench& bench : benches()) text += fmt::format("  {:<10}{}\n", bench.name, bench.what);
+    return text + R"(
+Examples:
+  coppice bench ecs
+  coppice bench raster --device llvmpipe --json out/raster.json
+  coppice bench stand --strict        exit code 1 where a figure does not reach what it is to reach)";
+}
+
+// Prints the table; returns how many figures do not hold.
+int print_table(const nlohmann::json& result) {
+    int missed = 0;
+    fmt::print("{:<34}{:>14}  {:<12}{:>12}\n", "figure", "value", "unit", "reach");
+    for (const nlohmann::json& figure : result.at("figures")) {
+        const bool asked = !figure.at("holds").is_null();
+        const bool holds = !asked || figure.at("holds").get<bool>();
+        missed += !holds;
+        fmt::print("{:<34}{:>14.6g}  {:<12}{:>12}  {}\n", figure.at("name").get<std::string>(),
+                   figure.at("value").get<double>(), figure.at("unit").get<std::string>(),
+                   asked ? fmt::format("{:g}", figure.at("reach").get<double>()) : "",
+                   !asked ? "" : holds ? "holds" : "NOT REACHED");
+    }
+    return missed;
+}
+
+Status run(const BenchCommand& command) {
+    auto bench = std::find_if(benches().begin(), benches().end(), [&](const Bench& b) { return b.name == command.name; });
+    if (bench == benches().end()) {
+        std::vector<std::string> names;
+        for (const Bench& known : benches()) names.emplace_back(known.name);
+        return fail(ErrorId::name_unknown, "", "", "no benchmark is called '" + command.name + "'",
+                    fmt::format("use one of: {}", fmt::join(names, ", ")));
+    }
+    COPPICE_TRY(const nlohmann::json result, bench->run(command.settings));
+    const int missed = print_table(result);
+    if (!command.json_file.empty()) COPPICE_CHECK(write_text_file(command.json_file, result.dump(2) + "\n"));
+    if (command.strict && missed > 0)
+        return fail(ErrorId::regressed, "", "bench " + command.name, fmt::format("{} figures do not hold", missed),
+                    "see the table");
+    return {};
+}
+
+}  // namespace
+
+const std::vector<Bench>& benches() {
+    static const std::vector<Bench> k_benches{
+        {"ecs", "a million entities in tiles of 1,000: create, destroy, iterate, find",
+         [](const BenchSettings&) { return bench_ecs(); }},
+        {"raster", "points, lines and triangles a second of the rasteriser alone",
+         [](const BenchSettings& settings) { return bench_raster(settings.device); }},
+        {"pines", "640 pines at 795x700, also with every triangle", bench_pines},
+        {"stand", "640, 5,000 and 50,000 trees, against other programs' times", bench_stand},
+    };
+    return k_benches;
+}
+
+void add_bench(CLI::App& app, Command& chosen) {
+    auto command = std::make_shared<BenchCommand>();
+    CLI::App* bench = app.add_subcommand("bench", "Measure, and compare with what is to be reached");
+    bench->footer(list_benches());
+    bench->add_option("name", command->name, "Which benchmark")->required();
+    bench->add_option("--json", command->json_file, "Also write the figures into this file");
+    bench->add_option("--device", command->settings.device, "Vulkan device, by index or part of its name");
+    bench->add_option("--content", command->settings.content, "Folder of scenes and species")
+        ->default_val("content");
+    bench->add_option("--cache", command->settings.cache_dir, "Folder of cooked plants. Default: ~/.cache/coppice");
+    bench->add_flag("--strict", command->strict, "Exit with 1 where a figure does not hold");
+    bench->callback([command, &chosen] { chosen = [command] { return run(*command); }; });
+}
+
+}  // namespace coppice

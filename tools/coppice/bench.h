@@ -1,0 +1,26 @@
+// The benchmarks of `coppice bench`: each gives {"name", "figures": [{name, value, unit, reach, holds}], ...}.
+#pragma once
+#include <functional>
+#include <string>
+#include <vector>
+#include <nlohmann/json.hpp>
+#include "runtime/core/result.h"
+
+namespace coppice {
+
+struct BenchSettings {
+    std::string device;     // index or part of a name
+    std::string content;    // folder of scenes and species
+    std::string cache_dir;  // of cooked plants
+};
+
+struct Bench {
+    const char* name;
+    const char* what;  // one line, for --help
+    std::function<Result<nlohmann::json>(const BenchSettings& settings)> run;
+};
+
+// In the order they are shown.
+const std::vector<Bench>& benches();
+
+}  // namespace coppice

@@ -1,0 +1,101 @@
+#include "tools/coppice/bench_scenes.h"
+
+#include <algorithm>
+#include <iterator>
+#include <string>
+#include "tools/coppice/figure.h"
+#include "tools/coppice/play_host.h"
+#include "tools/coppice/play_loop.h"
+#include "tools/coppice/play_report.h"
+
+namespace coppice {
+namespace {
+
+constexpr uint32_t k_flight_frames = 60;  // spread over the whole path
+
+// Flies a scene of content/scenes from its start to its end in k_flight_frames frames.
+Result<PlayRecord> fly_scene(const BenchSettings& settings, const std::string& scene, PlayOptions options) {
+    options.scene = settings.content + "/scenes/" + scene + ".eco.json";
+    options.headless = true;
+    options.device = settings.device;
+    options.cache_dir = settings.cache_dir;
+    options.pictures = "0";
+    options.frames = k_flight_frames;
+    COPPICE_TRY(std::unique_ptr<PlayHost> host, PlayHost::create(options));
+    const double duration_s = host->scene.camera_path.back().time_s;
+    if (duration_s > 0.0) options.fps = double(k_flight_frames - 1) / duration_s;
+    return play_headless(*host, options);
+}
+
+double figure_value(const std::vector<Figure>& figures, const std::string& name) {
+    auto found = std::find_if(figures.begin(), figures.end(), [&](const Figure& f) { return f.name == name; });
+    return found == figures.end() ? 0.0 : found->value;
+}
+
+nlohmann::json to_json(const char* name, const PlayRecord& record, const std::vector<Figure>& figures) {
+    nlohmann::json list = nlohmann::json::array();
+    for (const Figure& figure : figures) list.push_back(coppice::to_json(figure));
+    return {{"name", name},
+            {"device", record.device},
+            {"machine", record.machine.processor},
+            {"threads", record.machine.threads},
+            {"figures", std::move(list)}};
+}
+
+}  // namespace
+
+Result<nlohmann::json> bench_pines(const BenchSettings& settings) {
+    PlayOptions options;
+    options.width = 795;
+    options.height = 700;
+    options.compare_full = true;
+    COPPICE_TRY(const PlayRecord record, fly_scene(settings, "pines", options));
+    const std::vector<Figure> all = play_figures(record);
+    auto value = [&](const char* name) { return figure_value(all, name); };
+    return to_json("pines", record,
+                   {{"median_hz", value("median_hz"), "Hz", 30.0},
+                    {"median_ms", value("median_ms"), "ms", {}},
+                    {"sample_distance_px", value("sample_distance_px"), "px", 1.0, Reach::at_most},
+                    {"full_over_lod", value("full_over_lod"), "times", 30.0},
+                    {"compared_lod_median_ms", value("compared_lod_median_ms"), "ms", {}},
+                    {"compared_full_median_ms", value("compared_full_median_ms"), "ms", {}},
+                    {"psnr_to_full_db", value("psnr_to_full_db"), "dB", {}},
+                    {"vertices", value("vertices"), "per frame", {}},
+                    {"scene_triangles", value("scene_triangles"), "", {}}});
+}
+
+Result<nlohmann::json> bench_stand(const BenchSettings& settings) {
+    // compared_frames: how many are also drawn with every triangle, which takes seconds to minutes a frame.
+    // peer_db: the fastest peer's picture against its own full one, where it was measured.
+    struct Stand {
+        const char* scene;
+        double peer_ms;
+        uint32_t compared_frames;
+        double peer_db;
+    };
+    constexpr Stand k_stands[] = {{"stand_640", 356.0, 4, 25.5}, {"stand_5000", 409.0, 2, 24.4}, {"stand_50000", 490.0, 0, 0.0}};
+    std::vector<Figure> figures;
+    PlayRecord last;
+    for (const Stand& stand : k_stands) {
+        PlayOptions options;
+        options.compare_full = stand.compared_frames > 0;
+        options.compare_frames = stand.compared_frames;
+        COPPICE_TRY(last, fly_scene(settings, stand.scene, options));
+        const std::vector<Figure> all = play_figures(last);
+        double sum_ms = 0.0;
+        for (const FrameRecord& frame : last.frames) sum_ms += frame.wall_ms;
+        const std::string prefix = std::string(stand.scene) + "_";
+        figures.push_back({prefix + "mean_ms", sum_ms / double(last.frames.size()), "ms", stand.peer_ms / 10.0,
+                           Reach::at_most});
+        figures.push_back({prefix + "median_ms", figure_value(all, "median_ms"), "ms", {}});
+        figures.push_back({prefix + "sample_distance_px", figure_value(all, "sample_distance_px"), "px", {}});
+        figures.push_back({prefix + "vertices", figure_value(all, "vertices"), "per frame", {}});
+        if (options.compare_full) {
+            figures.push_back({prefix + "psnr_to_full_db", figure_value(all, "psnr_to_full_db"), "dB", stand.peer_db});
+            figures.push_back({prefix + "full_over_lod", figure_value(all, "full_over_lod"), "times", {}});
+        }
+    }
+    return to_json("stand", last, figures);
+}
+
+}  // namespace coppice

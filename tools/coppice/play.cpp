@@ -1,0 +1,130 @@
+// `coppice play`: flies through a scene in a window, or headless with pictures and a report.
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <unistd.h>
+#include <fmt/format.h>
+#include "tools/coppice/command.h"
+#include "tools/coppice/play_host.h"
+#include "tools/coppice/play_loop.h"
+#include "tools/coppice/play_report.h"
+#include "tools/coppice/play_window.h"
+
+namespace coppice {
+namespace {
+
+constexpr const char* k_examples = R"(
+Examples:
+  coppice play content/scenes/woodland.eco.json
+      in a window; WASD and the mouse fly, F1 shows all keys
+  coppice play content/scenes/woodland.eco.json --headless 1280x720 --out out/woodland
+      the whole path without a display; open out/woodland/index.html afterwards
+  coppice play content/scenes/pines.eco.json --headless 795x700 --out out/pines --compare-full
+      also draws some of the frames with every triangle, and prints both times
+  coppice play content/scenes/pines.eco.json --headless 795x700 --out out/p --frames 90 --pictures 0,45,89
+      the first 90 frames, pictures of three of them)";
+
+struct PlayCommand {
+    PlayOptions options;
+    std::string headless;
+    float sample_distance_px = 0.0f;
+    bool full = false;
+};
+
+// Found out before the work, not after it.
+Status make_folder(const std::string& out) {
+    std::error_code error;
+    std::filesystem::create_directories(out, error);
+    if (!std::filesystem::is_directory(out) || ::access(out.c_str(), W_OK) != 0)
+        return fail(ErrorId::write_failed, out, "", "cannot write into this folder",
+                    "name a folder that can be made and written with --out");
+    return {};
+}
+
+void print_table(const PlayRecord& record) {
+    fmt::print("{} at {} x {}, {} frames on {}\n", record.scene_name, record.width, record.height,
+               record.frames.size(), record.device);
+    for (const Figure& figure : play_figures(record))
+        fmt::print("  {:<26}{:>16.6g} {}\n", figure.name, figure.value, figure.unit);
+}
+
+Status run(PlayCommand command) {
+    PlayOptions& options = command.options;
+    options.settings.level_of_detail = !command.full;
+    if (command.sample_distance_px > 0.0f) options.sample_distance_px = command.sample_distance_px;
+    options.headless = !command.headless.empty();
+    if (!options.headless) {
+        if (!window_available())
+            return fail(ErrorId::usage, "", "", "there is no display to open a window on",
+                        "add --headless 1280x720 --out DIR");
+        return play_in_window(options);
+    }
+    COPPICE_CHECK(parse_size(command.headless, options.width, options.height));
+    COPPICE_CHECK(chosen_frames(options.pictures, 1));
+    if (!options.out.empty()) COPPICE_CHECK(make_folder(options.out));
+    COPPICE_TRY(std::unique_ptr<PlayHost> host, PlayHost::create(options));
+    COPPICE_TRY(const PlayRecord record, play_headless(*host, options));
+    print_table(record);
+    if (!options.out.empty()) {
+        COPPICE_CHECK(write_report(record, options.out));
+        fmt::print("{0}/index.html  {0}/summary.json  {0}/frames.csv\n", options.out);
+    }
+    if (record.validation_messages > 0)
+        return fail(ErrorId::regressed, "", "", fmt::format("{} messages of the validation layers",
+                                                            record.validation_messages), "there must be none");
+    return {};
+}
+
+}  // namespace
+
+void add_play(CLI::App& app, Command& chosen) {
+    auto command = std::make_shared<PlayCommand>();
+    PlayOptions& options = command->options;
+    CLI::App* play = app.add_subcommand("play", "Fly through a scene, in a window or headless with a report");
+    play->footer(k_examples);
+    play->add_option("scene", options.scene, "The scene, *.eco.json")->required();
+    play->add_option("--path", options.path, "Camera path, *.json, in place of the scene's own");
+    play->add_option("--headless", command->headless, "Size of the picture, as 1280x720; no window is opened");
+    play->add_option("--out", options.out, "Folder for pictures, frames.csv, summary.json and index.html");
+    play->add_option("--frames", options.frames, "So many frames from the start of the path; 0: the whole path")
+        ->check(CLI::Range(0, 1'000'000))
+        ->capture_default_str();
+    play->add_option("--fps", options.fps, "Frames a second of flight; a fixed step")
+        ->check(CLI::Range(0.01, 1000.0))
+        ->capture_default_str();
+    play->add_option("--pictures", options.pictures, "Frames to keep, as 0,30,60, or how many evenly spread")
+        ->capture_default_str();
+    play->add_option("--warmup", options.warmup, "Frames drawn before the first measured one")
+        ->check(CLI::Range(0, 1000))
+        ->capture_default_str();
+    play->add_option("--sample-distance", command->sample_distance_px,
+                     "d' in pixels; smaller draws more. Default: what the scene recommends")
+        ->check(CLI::Range(0.01, 1000.0));
+    play->add_option("--splat-factor", options.settings.splat_factor, "c_p: points for each square of side d'")
+        ->check(CLI::Range(0.01, 100.0))
+        ->capture_default_str();
+    const std::map<std::string, ProjectionMode> modes{{"printed", ProjectionMode::printed},
+                                                      {"isotropic", ProjectionMode::isotropic},
+                                                      {"measured", ProjectionMode::measured}};
+    play->add_option("--projection", options.settings.projection,
+                     "How areas and lengths are projected: printed, isotropic or measured")
+        ->transform(CLI::CheckedTransformer(modes).description(""))
+        ->default_str("measured");
+    const std::map<std::string, RepresentationView> views{{"lit", RepresentationView::lit},
+                                                          {"kinds", RepresentationView::kinds}};
+    play->add_option("--view", options.settings.view, "lit, or kinds: triangles green, lines blue, points red")
+        ->transform(CLI::CheckedTransformer(views).description(""))
+        ->default_str("lit");
+    play->add_flag("--full", command->full, "Every triangle: no level of detail");
+    play->add_flag("--compare-full", options.compare_full,
+                   "Also draw some of the frames with every triangle, in the same run");
+    play->add_option("--compare-frames", options.compare_frames, "How many of them")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    play->add_option("--device", options.device, "Vulkan device, by index or part of its name");
+    play->add_flag("--validation", options.validation, "Vulkan's validation layers; any message fails the run");
+    play->add_option("--cache", options.cache_dir, "Folder of cooked plants. Default: ~/.cache/coppice");
+    play->callback([command, &chosen] { chosen = [command] { return run(*command); }; });
+}
+
+}  // namespace coppice

@@ -1,0 +1,86 @@
+// What any program has that embeds the vegetation plugin: plugins, a scene with its plants, a device, a world, a
+// schedule, a frame graph and a ring of command buffers. One thread at a time.
+#pragma once
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+#include "plugins/images/images.h"
+#include "plugins/vegetation/vegetation.h"
+#include "runtime/ecs/schedule.h"
+#include "runtime/ecs/world.h"
+#include "runtime/frame/frame_graph.h"
+#include "runtime/gpu/commands.h"
+#include "runtime/gpu/device.h"
+#include "runtime/plugin/registry.h"
+#include "tools/coppice/play_options.h"
+#include "tools/coppice/play_record.h"
+
+namespace coppice {
+
+// Milliseconds since it was made.
+class Stopwatch {
+  public:
+    double ms() const {
+        return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
+    }
+
+  private:
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+class PlayHost {
+  public:
+    // Loads everything the options name; plants that are not in the cache are cooked first. present_extensions: of
+    // the instance, where the pictures go to a window.
+    static Result<std::unique_ptr<PlayHost>> create(const PlayOptions& options,
+                                                    const std::vector<const char*>& present_extensions = {});
+    ~PlayHost();
+
+    // Called with the device times of the frame that used a slot last, before the slot is used again.
+    using ReadTimes = std::function<void(uint32_t slot, std::span<const gpu::Timestamps::Section> sections)>;
+    ReadTimes read_times;
+
+    // Runs the systems and records the passes. The caller submits: with the ring, or with a window.
+    struct Frame {
+        gpu::CommandRing::Frame ring;
+        double schedule_ms;  // CPU: the systems
+    };
+    Result<Frame> begin_frame(const Camera& camera, const FrameSettings& settings);
+
+    // One frame, from its start until its picture is complete.
+    struct FrameTimes {
+        double wall_ms, schedule_ms;
+        uint32_t slot;
+    };
+    Result<FrameTimes> draw_frame(const Camera& camera, const FrameSettings& settings);
+    // Calls read_times for the frames that have not been asked for yet.
+    Status finish_times();
+    // Of the last frame drawn.
+    Result<Picture> read_picture() const;
+    Status resize(uint32_t width_px, uint32_t height_px);
+
+    // In the order of what needs what, destroyed from the last to the first.
+    Registry registry;
+    const ImagesInterface* images = nullptr;  // nullptr where the plugin is not installed
+    Scene scene;
+    std::vector<std::pair<std::string, uint64_t>> hashes;  // of what was loaded
+    LoadTimes load{};
+    std::unique_ptr<gpu::Device> device;
+    World world;
+    Schedule schedule{world};
+    FrameGraph graph;
+    std::unique_ptr<Vegetation> vegetation;
+    gpu::CommandRing ring;
+    uint32_t width = 0, height = 0;
+
+  private:
+    PlayHost() = default;
+    Status load_plugins();
+    Result<std::vector<Plant>> load_plants(const PlayOptions& options);
+};
+
+}  // namespace coppice

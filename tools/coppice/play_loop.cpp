@@ -1,0 +1,184 @@
+#include "tools/coppice/play_loop.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include "runtime/core/file.h"
+#include "runtime/core/hash.h"
+#include "runtime/core/log.h"
+#include "runtime/core/progress.h"
+#include "tools/coppice/play_page.h"
+#include "tools/coppice/play_report.h"
+
+namespace coppice {
+namespace {
+
+constexpr uint32_t k_frames_of_a_still_camera = 60;
+constexpr uint32_t k_frame_limit = 1'000'000;
+constexpr uint32_t k_growth_tries = 6;  // the work list at least doubles each time
+
+// Peak signal to noise of the colours, in dB; 99 where they are equal. Requires the same size.
+double psnr_db(const Picture& picture, const Picture& reference) {
+    double sum = 0.0;
+    for (size_t i = 0; i < picture.rgba.size(); ++i) {
+        if (i % 4 == 3) continue;
+        double difference = double(picture.rgba[i]) - double(reference.rgba[i]);
+        sum += difference * difference;
+    }
+    double mean = sum / (double(picture.rgba.size()) * 0.75);
+    return mean > 0.0 ? std::min(99.0, 10.0 * std::log10(255.0 * 255.0 / mean)) : 99.0;
+}
+
+Result<PlayPicture> keep_picture(const PlayHost& host, const PlayOptions& options, uint32_t frame,
+                                 const Picture& picture) {
+    PlayPicture kept{frame, double(frame) / options.fps,
+                     fmt::format("frame_{:04}.{}", frame, host.images ? "png" : "ppm"), {},
+                     hash_bytes(picture.rgba.data(), picture.rgba.size())};
+    if (!host.images) {
+        if (!options.out.empty()) COPPICE_CHECK(write_ppm(options.out + "/" + kept.file, picture));
+        return kept;
+    }
+    COPPICE_TRY(kept.png, host.images->encode_png(picture));
+    if (!options.out.empty()) COPPICE_CHECK(write_file(options.out + "/" + kept.file, kept.png));
+    return kept;
+}
+
+// Writes the device times of each slot's frame into that frame's record.
+class PassTimes {
+  public:
+    explicit PassTimes(PlayRecord& record) : record_(record) {}
+    void expect(uint32_t slot, size_t frame) {
+        if (slot >= frames_.size()) frames_.resize(slot + 1, k_none);
+        frames_[slot] = frame;
+    }
+    void read(uint32_t slot, std::span<const gpu::Timestamps::Section> sections) {
+        if (slot >= frames_.size() || frames_[slot] == k_none) return;
+        FrameRecord& frame = record_.frames[frames_[slot]];
+        frames_[slot] = k_none;
+        for (const auto& section : sections) {
+            auto pass = std::find(record_.passes.begin(), record_.passes.end(), section.name);
+            size_t index = size_t(pass - record_.passes.begin());
+            if (pass == record_.passes.end()) record_.passes.emplace_back(section.name);
+            if (frame.pass_ms.size() <= index) frame.pass_ms.resize(index + 1, 0.0);
+            frame.pass_ms[index] += section.ms;
+        }
+    }
+
+  private:
+    static constexpr size_t k_none = SIZE_MAX;
+    PlayRecord& record_;
+    std::vector<size_t> frames_;
+};
+
+// The frame with level of detail has just been drawn in lod_ms.
+Result<ComparedFrame> compare_with_full(PlayHost& host, const Camera& camera, const FrameSettings& settings,
+                                        uint32_t frame, double lod_ms, const Picture& lod_picture) {
+    ComparedFrame compared{frame, lod_ms, 0.0, host.vegetation->report().vertices, 0, 0.0};
+    FrameSettings full = settings;
+    full.level_of_detail = false;
+    for (uint32_t tries = 0;; ++tries) {  // the first draws may find the work list too short, and make it grow
+        COPPICE_TRY(PlayHost::FrameTimes times, host.draw_frame(camera, full));
+        compared.full_ms = times.wall_ms;
+        const uint64_t dropped = host.vegetation->report().dropped_entries;
+        if (dropped == 0 && tries > 0) break;
+        if (tries == k_growth_tries)
+            return fail(ErrorId::limit_exceeded, "", "frame " + std::to_string(frame),
+                        fmt::format("{} entries of the work list of all triangles do not fit", dropped),
+                        "a smaller scene, or no --compare-full");
+    }
+    compared.full_triangles = host.vegetation->report().triangles;
+    COPPICE_TRY(Picture full_picture, host.read_picture());
+    compared.psnr_db = psnr_db(lod_picture, full_picture);
+    COPPICE_CHECK(host.draw_frame(camera, settings));  // what follows finds its data as it would have
+    return compared;
+}
+
+PlayRecord describe(const PlayHost& host, const PlayOptions& options) {
+    PlayRecord record;
+    record.command = command_line();
+    record.scene_name = host.scene.name;
+    record.scene_path = host.scene.path;
+    record.width = host.width;
+    record.height = host.height;
+    record.fps = options.fps;
+    record.settings = options.settings;
+    record.settings.sample_distance_px = options.sample_distance_px.value_or(host.scene.sample_distance_px);
+    record.machine = describe_machine();
+    record.device = host.device->name;
+    record.driver = host.device->driver;
+    record.validation = options.validation;
+    record.plants = host.scene.plant_models.size();
+    record.hashes = host.hashes;
+    return record;
+}
+
+}  // namespace
+
+uint32_t count_frames(const PlayOptions& options, const Scene& scene) {
+    if (options.frames > 0) return std::min(options.frames, k_frame_limit);
+    const double duration_s = scene.camera_path.back().time_s;
+    if (!(duration_s > 0.0)) return k_frames_of_a_still_camera;
+    return uint32_t(std::min(std::floor(duration_s * options.fps) + 1.0, double(k_frame_limit)));
+}
+
+Result<PlayRecord> play_headless(PlayHost& host, const PlayOptions& options) {
+    PlayRecord record = describe(host, options);
+    const FrameSettings settings = record.settings;
+    const uint32_t frame_count = count_frames(options, host.scene);
+    COPPICE_TRY(const std::vector<uint32_t> picture_frames, chosen_frames(options.pictures, frame_count));
+    const std::vector<uint32_t> compared_frames =
+        options.compare_full ? spread_frames(options.compare_frames, frame_count) : std::vector<uint32_t>();
+    auto is_in = [](const std::vector<uint32_t>& frames, uint32_t frame) {
+        return std::binary_search(frames.begin(), frames.end(), frame);
+    };
+
+    PassTimes pass_times(record);
+    host.read_times = [&pass_times](uint32_t slot, auto sections) { pass_times.read(slot, sections); };
+    for (uint32_t i = 0; i < options.warmup; ++i) {
+        COPPICE_TRY(PlayHost::FrameTimes times, host.draw_frame(camera_at(host.scene.camera_path, 0.0), settings));
+        if (i == 0) host.load.first_frame_ms = times.wall_ms;
+    }
+    record.load = host.load;
+
+    Progress progress("flying", frame_count);
+    record.frames.reserve(frame_count);
+    for (uint32_t i = 0; i < frame_count; ++i) {
+        const double time_s = double(i) / options.fps;
+        const Camera camera = camera_at(host.scene.camera_path, time_s);
+        COPPICE_TRY(PlayHost::FrameTimes times, host.draw_frame(camera, settings));
+        pass_times.expect(times.slot, record.frames.size());
+        record.frames.push_back({i, time_s, times.wall_ms, times.schedule_ms, {}, host.vegetation->report()});
+        const bool kept = is_in(picture_frames, i), compared = is_in(compared_frames, i);
+        if (kept || compared) {
+            COPPICE_TRY(Picture picture, host.read_picture());
+            if (kept) {
+                COPPICE_TRY(PlayPicture one, keep_picture(host, options, i, picture));
+                record.pictures.push_back(std::move(one));
+            }
+            if (compared) {
+                COPPICE_TRY(ComparedFrame one,
+                            compare_with_full(host, camera, settings, i, times.wall_ms, picture));
+                record.compared.push_back(one);
+            }
+        }
+        progress.advance();
+    }
+    COPPICE_CHECK(host.finish_times());
+    host.read_times = nullptr;
+    for (FrameRecord& frame : record.frames) frame.pass_ms.resize(record.passes.size(), 0.0);
+    record.scene_triangles = record.frames.back().report.scene_triangles;
+    record.validation_messages = host.device->validation_messages();
+    record.hashes.emplace_back("world", host.world.hash());
+    if (!host.images && !record.pictures.empty())
+        log_note("the images plugin is not installed: pictures are written as PPM");
+    return record;
+}
+
+Status write_report(const PlayRecord& record, const std::string& out) {
+    COPPICE_CHECK(write_text_file(out + "/frames.csv", frames_csv(record)));
+    const auto replace = nlohmann::json::error_handler_t::replace;
+    COPPICE_CHECK(write_text_file(out + "/summary.json", play_summary(record).dump(2, ' ', false, replace) + "\n"));
+    return write_text_file(out + "/index.html", play_page(record));
+}
+
+}  // namespace coppice

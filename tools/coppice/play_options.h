@@ -1,0 +1,41 @@
+// What the user asked of `coppice play`.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+#include "plugins/vegetation/lod/settings.h"
+#include "runtime/core/result.h"
+
+namespace coppice {
+
+struct PlayOptions {
+    std::string scene;
+    std::string path;                  // camera path; empty: the scene's own
+    bool headless = false;
+    uint32_t width = 1280, height = 720;
+    std::string out;                   // folder; empty: no files
+    uint32_t frames = 0;               // 0: the whole path
+    double fps = 30.0;                 // fixed step: the same frames on every machine
+    uint32_t warmup = 5;               // frames drawn before the first measured one
+    std::string pictures = "4";        // see chosen_frames()
+    std::optional<float> sample_distance_px;  // empty: what the scene recommends
+    FrameSettings settings;
+    bool compare_full = false;
+    uint32_t compare_frames = 5;
+    std::string device;
+    bool validation = false;
+    std::string cache_dir;             // of packed plants; empty: the user's cache folder
+};
+
+// "1280x720". Errors: usage.
+Status parse_size(const std::string& text, uint32_t& width, uint32_t& height);
+
+// "0,30,60": these frames; "4": so many, evenly spread, the first and the last among them; "0": none.
+// Sorted, without doubles, all below frame_count (others are left out). Errors: usage.
+Result<std::vector<uint32_t>> chosen_frames(const std::string& text, uint32_t frame_count);
+
+// `count` of the frames, evenly spread; the first and the last among them where count > 1.
+std::vector<uint32_t> spread_frames(uint32_t count, uint32_t frame_count);
+
+}  // namespace coppice

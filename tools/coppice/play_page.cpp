@@ -1,0 +1,224 @@
+#include "tools/coppice/play_page.h"
+
+#include <algorithm>
+#include <iterator>
+#include <span>
+#include <fmt/format.h>
+#include "runtime/core/hash.h"
+#include "tools/coppice/play_options.h"
+#include "tools/coppice/play_plot.h"
+#include "tools/coppice/play_report.h"
+#include "tools/coppice/statistics.h"
+
+namespace coppice {
+namespace {
+
+constexpr const char* k_style = R"(
+:root { --ink:#1d2a22; --soft:#5d6c62; --line:#dfe6df; --leaf:#2f6b3f; --paper:#fbfcf9; }
+* { box-sizing:border-box }
+body { margin:0; background:var(--paper); color:var(--ink); font:16px/1.55 system-ui,"Segoe UI",Roboto,sans-serif }
+main { max-width:1040px; margin:0 auto; padding:48px 24px 72px }
+h1 { font-size:34px; line-height:1.15; margin:0 0 8px; letter-spacing:-.01em }
+h2 { font-size:21px; margin:48px 0 4px }
+p { margin:4px 0 14px; max-width:46em } .soft { color:var(--soft) }
+.cards { display:grid; grid-template-columns:repeat(auto-fit,minmax(210px,1fr)); gap:14px; margin:28px 0 8px }
+.card { background:#fff; border:1px solid var(--line); border-radius:12px; padding:16px 18px }
+.card b { display:block; font-size:30px; line-height:1.2; color:var(--leaf); font-variant-numeric:tabular-nums }
+.card span { color:var(--soft); font-size:14px }
+figure { margin:0 } figcaption { color:var(--soft); font-size:14px; padding:6px 2px 0 }
+img { width:100%; display:block; border-radius:10px }
+.hero { margin:26px 0 0 }
+.pictures { display:grid; grid-template-columns:repeat(auto-fill,minmax(440px,1fr)); gap:20px; margin-top:14px }
+.plot { background:#fff; border:1px solid var(--line); border-radius:12px; padding:16px 14px 6px; margin-top:10px }
+svg { width:100%; height:auto; display:block } svg text { font-size:12px; fill:var(--soft) }
+svg .grid { stroke:var(--line); stroke-width:1 }
+.legend { display:flex; flex-wrap:wrap; gap:4px 18px; font-size:14px; margin:8px 0 6px 50px; max-width:none }
+.legend i { display:inline-block; width:11px; height:11px; border-radius:3px; margin-right:6px }
+table { border-collapse:collapse; width:100%; background:#fff; border:1px solid var(--line); font-size:15px;
+  margin-top:10px } td,th { text-align:left; padding:7px 14px; border-top:1px solid var(--line); vertical-align:top }
+th { color:var(--soft); font-weight:500 } td:first-child { color:var(--soft); width:34% }
+.numbers td, .numbers th { text-align:right; width:auto; font-variant-numeric:tabular-nums }
+code { font:13px/1.5 ui-monospace,Menlo,Consolas,monospace; background:#eef3ec; padding:2px 6px; border-radius:5px;
+  overflow-wrap:anywhere }
+@media (max-width:520px) { .pictures { grid-template-columns:1fr } }
+)";
+
+// Enough apart to be told from one another side by side, dark to light.
+constexpr const char* k_colors[] = {"#28506b", "#3f8f5b", "#8cbf6a", "#e0b64c", "#d98148", "#b4545c",
+                                    "#7d5a8c", "#5b86b8", "#4fa3a0", "#a3a86b", "#c79ab0", "#8a8f8c"};
+
+constexpr uint32_t k_picture_limit = 24;
+
+const PlayPicture& middle_picture(const PlayRecord& record) { return record.pictures[record.pictures.size() / 2]; }
+
+std::string encode_base64(std::span<const std::byte> bytes) {
+    static constexpr char k_digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    text.reserve((bytes.size() + 2) / 3 * 4);
+    for (size_t i = 0; i < bytes.size(); i += 3) {
+        const size_t count = std::min<size_t>(3, bytes.size() - i);
+        uint32_t word = 0;
+        for (size_t k = 0; k < 3; ++k) word = word << 8 | (k < count ? uint32_t(bytes[i + k]) : 0u);
+        for (size_t k = 0; k < 4; ++k) text += k <= count ? k_digits[word >> (18 - 6 * k) & 63] : '=';
+    }
+    return text;
+}
+
+std::string card(const std::string& value, const std::string& meaning) {
+    return fmt::format("<div class=\"card\"><b>{}</b><span>{}</span></div>\n", value, meaning);
+}
+
+std::string figure(const PlayPicture& picture, const char* css_class) {
+    const std::string source =
+        picture.png.empty() ? escape_html(picture.file) : "data:image/png;base64," + encode_base64(picture.png);
+    return fmt::format("<figure class=\"{}\"><img src=\"{}\" alt=\"Frame {}\"><figcaption>frame {}, {:.2f} s"
+                       "</figcaption></figure>\n",
+                       css_class, source, picture.frame, picture.frame, picture.time_s);
+}
+
+std::string cards(const PlayRecord& record) {
+    std::vector<double> wall, vertices, full;
+    for (const FrameRecord& frame : record.frames) {
+        wall.push_back(frame.wall_ms);
+        vertices.push_back(double(frame.report.vertices));
+        full.push_back(double(frame.report.full_triangles));
+    }
+    const double median_ms = std::max(median(wall), 1e-6);
+    std::string html = "<div class=\"cards\">\n";
+    html += card(fmt::format("{:.1f} ms", median_ms),
+                 fmt::format("a frame, median: {:.0f} frames a second", 1000.0 / median_ms));
+    html += card(fmt::format("{:.1f} ms", quantile(wall, 0.95)), "or less for 95 % of the frames");
+    html += card(short_count(median(vertices)), fmt::format("vertices drawn a frame, for {} triangles in view",
+                                                            short_count(median(full))));
+    html += card(short_count(double(record.scene_triangles)),
+                 fmt::format("triangles in the scene, {} plants", short_count(double(record.plants))));
+    if (!record.compared.empty()) {
+        std::vector<double> lod_ms, full_ms;
+        for (const ComparedFrame& frame : record.compared) {
+            lod_ms.push_back(frame.lod_ms);
+            full_ms.push_back(frame.full_ms);
+        }
+        html += card(fmt::format("{:.3g} times", median(full_ms) / std::max(median(lod_ms), 1e-6)),
+                     "less time than drawing every triangle");
+    }
+    return html + "</div>\n";
+}
+
+// What a frame's wall time consists of: the systems on the CPU, the passes on the device, the rest.
+std::string time_plot(const PlayRecord& record, const std::vector<double>& time_s) {
+    std::vector<PlotSeries> series;
+    auto add = [&](std::string name, auto value) {
+        PlotSeries one{std::move(name), k_colors[series.size() % std::size(k_colors)], {}};
+        for (const FrameRecord& frame : record.frames) one.values.push_back(std::max(value(frame), 0.0));
+        series.push_back(std::move(one));
+    };
+    add("cull (CPU)", [](auto& f) { return f.report.cull_ms; });
+    add("level of detail (CPU)", [](auto& f) { return f.report.lod_ms; });
+    add("work list (CPU)", [](auto& f) { return f.report.write_ms; });
+    for (size_t pass = 0; pass < record.passes.size(); ++pass)
+        add(record.passes[pass], [pass](auto& f) { return pass < f.pass_ms.size() ? f.pass_ms[pass] : 0.0; });
+    add("everything else", [](auto& f) {
+        double known = f.report.cull_ms + f.report.lod_ms + f.report.write_ms;
+        for (double ms : f.pass_ms) known += ms;
+        return f.wall_ms - known;
+    });
+    series.back().color = "#d5dad4";
+    return stacked_plot(time_s, series, {"Frame time by pass", "flight time, s", "ms a frame"});
+}
+
+std::string count_plot(const PlayRecord& record, const std::vector<double>& time_s) {
+    std::vector<PlotSeries> series{{"points", "#c8553d", {}}, {"lines, two vertices each", "#3d6fa8", {}},
+                                   {"triangles, three vertices each", "#4f9a5a", {}}};
+    for (const FrameRecord& frame : record.frames) {
+        series[0].values.push_back(double(frame.report.points));
+        series[1].values.push_back(2.0 * double(frame.report.lines));
+        series[2].values.push_back(3.0 * double(frame.report.triangles));
+    }
+    return stacked_plot(time_s, series, {"Vertices drawn by kind", "flight time, s", "vertices a frame"});
+}
+
+std::string compared_table(const PlayRecord& record) {
+    if (record.compared.empty()) return {};
+    std::string html =
+        "<h2>Against every triangle</h2>\n<p class=\"soft\">The same frames in the same run, once with level of "
+        "detail and once with every triangle in view, one after the other. The last column is how much alike the two "
+        "pictures are (peak signal to noise; more is better).</p>\n<table class=\"numbers\"><tr><th>frame</th>"
+        "<th>level of detail, ms</th><th>every triangle, ms</th><th>ratio</th><th>vertices</th><th>triangles</th>"
+        "<th>dB</th></tr>\n";
+    for (const ComparedFrame& frame : record.compared)
+        html += fmt::format("<tr><td>{}</td><td>{:.2f}</td><td>{:.1f}</td><td>{:.1f}</td><td>{}</td><td>{}</td>"
+                            "<td>{:.1f}</td></tr>\n",
+                            frame.frame, frame.lod_ms, frame.full_ms, frame.full_ms / std::max(frame.lod_ms, 1e-6),
+                            short_count(double(frame.lod_vertices)), short_count(double(frame.full_triangles)),
+                            frame.psnr_db);
+    return html + "</table>\n";
+}
+
+std::string facts_table(const PlayRecord& record) {
+    std::string html = "<table>\n";
+    auto row = [&html](const std::string& name, const std::string& value) {
+        if (!value.empty())
+            html += fmt::format("<tr><td>{}</td><td>{}</td></tr>\n", escape_html(name), escape_html(value));
+    };
+    const Machine& machine = record.machine;
+    row("device", record.device);
+    row("driver", record.driver);
+    row("processor", fmt::format("{}, {} threads, {:.1f} GiB", machine.processor, machine.threads, machine.memory_gib));
+    row("system", machine.system);
+    row("program", fmt::format("Coppice {}, {}, {}", COPPICE_VERSION, machine.build, machine.compiler));
+    row("picture", fmt::format("{} x {}", record.width, record.height));
+    row("flight", fmt::format("{} frames, {:g} a second of flight", record.frames.size(), record.fps));
+    row("sample distance d'", fmt::format("{:g} px", record.settings.sample_distance_px));
+    row("splat factor c_p", fmt::format("{:g}", record.settings.splat_factor));
+    row("projection", name_of(record.settings.projection));
+    row("level of detail", record.settings.level_of_detail ? "on" : "off: every triangle");
+    const LoadTimes& load = record.load;
+    row("loading, ms", fmt::format("scene {:.0f}, cooking {:.0f}, plants {:.0f}, device {:.0f}, upload {:.0f}, first "
+                                   "frame {:.0f}",
+                                   load.scene_ms, load.cook_ms, load.plants_ms, load.device_ms, load.upload_ms,
+                                   load.first_frame_ms));
+    if (record.validation)
+        row("validation layers", fmt::format("{} messages", record.validation_messages));
+    for (const auto& [name, hash] : record.hashes) row("hash of " + name, hash_to_hex(hash));
+    for (const PlayPicture& picture : record.pictures)
+        row(fmt::format("hash of picture {}", picture.frame), hash_to_hex(picture.hash));
+    return html + "</table>\n";
+}
+
+}  // namespace
+
+std::string play_page(const PlayRecord& record) {
+    std::vector<double> time_s;
+    for (const FrameRecord& frame : record.frames) time_s.push_back(frame.time_s);
+    const std::string name = escape_html(record.scene_name);
+    std::string html = fmt::format(
+        "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
+        "content=\"width=device-width,initial-scale=1\"><title>{0} - Coppice</title><style>{1}</style></head>\n"
+        "<body><main>\n<h1>{0}</h1>\n<p class=\"soft\">A flight of {2} frames at {3} x {4} pixels, drawn by Coppice "
+        "on {5}. Plants far away are drawn as fewer points and lines, near ones as triangles, so that the picture "
+        "decides what a frame costs.</p>\n",
+        name, k_style, record.frames.size(), record.width, record.height, escape_html(record.device));
+    if (!record.pictures.empty()) html += figure(middle_picture(record), "hero");
+    html += cards(record);
+    html += "<h2>Time of a frame</h2>\n<p class=\"soft\">From the start of a frame until its picture was complete, "
+            "nothing overlapped; by what the time went into.</p>\n<div class=\"plot\">" +
+            time_plot(record, time_s) + "</div>\n";
+    html += "<h2>What was drawn</h2>\n<p class=\"soft\">Vertices of the plants by kind of primitive.</p>\n"
+            "<div class=\"plot\">" +
+            count_plot(record, time_s) + "</div>\n";
+    html += compared_table(record);
+    if (record.pictures.size() > 1) {
+        html += "<h2>Pictures</h2>\n<div class=\"pictures\">\n";
+        // A page of hundreds of pictures opens nowhere: the others stay files.
+        for (uint32_t i : spread_frames(k_picture_limit, uint32_t(record.pictures.size())))
+            if (&record.pictures[i] != &middle_picture(record)) html += figure(record.pictures[i], "");
+        html += "</div>\n";
+    }
+    html += "<h2>Machine, settings, hashes</h2>\n" + facts_table(record);
+    html += "<h2>Again</h2>\n<p><code>" + escape_html(record.command) +
+            "</code></p>\n<p class=\"soft\">Every frame's figures are in frames.csv and summary.json beside this page."
+            "</p>\n</main></body></html>\n";
+    return html;
+}
+
+}  // namespace coppice

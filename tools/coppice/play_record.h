@@ -1,0 +1,62 @@
+// What a playthrough left behind, in memory: the report and the page are made from it.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+#include "plugins/vegetation/lod/settings.h"
+#include "plugins/vegetation/report/report.h"
+#include "tools/coppice/machine.h"
+
+namespace coppice {
+
+struct FrameRecord {
+    uint32_t frame;
+    double time_s;
+    double wall_ms;               // from the start of the frame to its picture being complete, nothing overlapped
+    double schedule_ms;           // CPU: the systems, cull and lod among them
+    std::vector<double> pass_ms;  // device time, as PlayRecord::passes; a pass that did not run has 0
+    FrameReport report;
+};
+
+struct PlayPicture {
+    uint32_t frame;
+    double time_s;
+    std::string file;  // beside the page
+    std::vector<std::byte> png;  // empty where the images plugin is not installed
+    uint64_t hash;               // of the pixels
+};
+
+// The same frames drawn with and without level of detail, one after the other.
+struct ComparedFrame {
+    uint32_t frame;
+    double lod_ms, full_ms;
+    uint64_t lod_vertices, full_triangles;
+    double psnr_db;  // of the picture with level of detail against the one without
+};
+
+struct LoadTimes {
+    double scene_ms, cook_ms, plants_ms, device_ms, upload_ms, first_frame_ms;
+};
+
+struct PlayRecord {
+    std::string command;  // what to type to get this again
+    std::string scene_name, scene_path;
+    uint32_t width, height;
+    double fps;
+    FrameSettings settings;
+    Machine machine;
+    std::string device, driver;
+    uint64_t validation_messages = 0;
+    bool validation = false;
+    uint64_t plants = 0, scene_triangles = 0;
+    LoadTimes load{};
+    std::vector<std::string> passes;  // in order of execution
+    std::vector<FrameRecord> frames;
+    std::vector<PlayPicture> pictures;
+    std::vector<ComparedFrame> compared;
+    std::vector<std::pair<std::string, uint64_t>> hashes;  // of what was drawn: scene file, plants
+};
+
+}  // namespace coppice

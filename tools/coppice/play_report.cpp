@@ -1,0 +1,153 @@
+#include "tools/coppice/play_report.h"
+
+#include <fmt/format.h>
+#include "runtime/core/hash.h"
+#include "tools/coppice/statistics.h"
+
+namespace coppice {
+namespace {
+
+template <class Value>
+std::vector<double> over_frames(const PlayRecord& record, Value value) {
+    std::vector<double> values;
+    values.reserve(record.frames.size());
+    for (const FrameRecord& frame : record.frames) values.push_back(double(value(frame)));
+    return values;
+}
+
+template <class Value>
+std::vector<double> over_compared(const PlayRecord& record, Value value) {
+    std::vector<double> values;
+    for (const ComparedFrame& frame : record.compared) values.push_back(double(value(frame)));
+    return values;
+}
+
+}  // namespace
+
+const char* name_of(ProjectionMode mode) {
+    switch (mode) {
+        case ProjectionMode::printed: return "printed";
+        case ProjectionMode::isotropic: return "isotropic";
+        case ProjectionMode::measured: return "measured";
+    }
+    return "unknown";
+}
+
+std::vector<Figure> play_figures(const PlayRecord& record) {
+    const std::vector<double> wall = over_frames(record, [](auto& f) { return f.wall_ms; });
+    const double median_ms = median(wall);
+    auto count = [&](auto value) { return median(over_frames(record, value)); };
+    double most_dropped = 0.0;
+    for (const FrameRecord& frame : record.frames)
+        most_dropped = std::max(most_dropped, double(frame.report.dropped_entries));
+
+    std::vector<Figure> figures{
+        {"median_ms", median_ms, "ms", {}},
+        {"p95_ms", quantile(wall, 0.95), "ms", {}},
+        {"slowest_ms", quantile(wall, 1.0), "ms", {}},
+        {"median_hz", median_ms > 0.0 ? 1000.0 / median_ms : 0.0, "Hz", {}},
+        {"cull_ms", count([](auto& f) { return f.report.cull_ms; }), "ms", {}},
+        {"lod_ms", count([](auto& f) { return f.report.lod_ms; }), "ms", {}},
+        {"write_ms", count([](auto& f) { return f.report.write_ms; }), "ms", {}},
+        {"sample_distance_px", record.settings.sample_distance_px, "px", {}},
+        {"splat_factor", record.settings.splat_factor, "", {}},
+        {"vertices", count([](auto& f) { return f.report.vertices; }), "per frame", {}},
+        {"triangles", count([](auto& f) { return f.report.triangles; }), "per frame", {}},
+        {"lines", count([](auto& f) { return f.report.lines; }), "per frame", {}},
+        {"points", count([](auto& f) { return f.report.points; }), "per frame", {}},
+        {"terrain_triangles", count([](auto& f) { return f.report.terrain_triangles; }), "per frame", {}},
+        {"full_triangles_in_view", count([](auto& f) { return f.report.full_triangles; }), "per frame", {}},
+        {"scene_triangles", double(record.scene_triangles), "", {}},
+        {"plants", double(record.plants), "", {}},
+        {"dropped_entries", most_dropped, "worst frame", {}},
+        {"device_memory_mib",
+         quantile(over_frames(record, [](auto& f) { return double(f.report.gpu_bytes) / (1 << 20); }), 1.0), "MiB", {}},
+        {"load_ms", record.load.scene_ms + record.load.plants_ms + record.load.device_ms + record.load.upload_ms,
+         "ms", {}},
+        {"cook_ms", record.load.cook_ms, "ms", {}},
+        {"first_frame_ms", record.load.first_frame_ms, "ms", {}},
+    };
+    for (size_t pass = 0; pass < record.passes.size(); ++pass)
+        figures.push_back({"pass_" + record.passes[pass] + "_ms",
+                           count([pass](auto& f) { return f.pass_ms.size() > pass ? f.pass_ms[pass] : 0.0; }), "ms",
+                           {}});
+    if (!record.compared.empty()) {
+        double lod = median(over_compared(record, [](auto& f) { return f.lod_ms; }));
+        double full = median(over_compared(record, [](auto& f) { return f.full_ms; }));
+        figures.push_back({"compared_lod_median_ms", lod, "ms", {}});
+        figures.push_back({"compared_full_median_ms", full, "ms", {}});
+        figures.push_back({"full_over_lod", lod > 0.0 ? full / lod : 0.0, "times", {}});
+        figures.push_back({"psnr_to_full_db", median(over_compared(record, [](auto& f) { return f.psnr_db; })), "dB", {}});
+    }
+    if (record.validation)
+        figures.push_back({"validation_messages", double(record.validation_messages), "", 0.0, Reach::at_most});
+    return figures;
+}
+
+std::string frames_csv(const PlayRecord& record) {
+    std::string csv = "frame,time_s,wall_ms,schedule_ms,cull_ms,lod_ms,write_ms";
+    for (const std::string& pass : record.passes) csv += ",gpu_" + pass + "_ms";
+    csv += ",vertices,triangles,lines,points,terrain_triangles,full_triangles,tiles_visible,plants_visible,"
+           "work_entries,dropped_entries\n";
+    for (const FrameRecord& frame : record.frames) {
+        const FrameReport& report = frame.report;
+        csv += fmt::format("{},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f}", frame.frame, frame.time_s, frame.wall_ms,
+                           frame.schedule_ms, report.cull_ms, report.lod_ms, report.write_ms);
+        for (double ms : frame.pass_ms) csv += fmt::format(",{:.4f}", ms);
+        csv += fmt::format(",{},{},{},{},{},{},{},{},{},{}\n", report.vertices, report.triangles, report.lines,
+                           report.points, report.terrain_triangles, report.full_triangles, report.tiles_visible,
+                           report.plants_visible, report.work_entries, report.dropped_entries);
+    }
+    return csv;
+}
+
+nlohmann::json play_summary(const PlayRecord& record) {
+    using nlohmann::json;
+    json figures = json::array(), pictures = json::array(), compared = json::array(), hashes = json::object();
+    for (const Figure& figure : play_figures(record)) figures.push_back(to_json(figure));
+    for (const PlayPicture& picture : record.pictures)
+        pictures.push_back({{"frame", picture.frame}, {"time_s", picture.time_s}, {"file", picture.file},
+                            {"hash", hash_to_hex(picture.hash)}});
+    for (const ComparedFrame& frame : record.compared)
+        compared.push_back({{"frame", frame.frame}, {"lod_ms", frame.lod_ms}, {"full_ms", frame.full_ms},
+                            {"lod_vertices", frame.lod_vertices}, {"full_triangles", frame.full_triangles},
+                            {"psnr_db", frame.psnr_db}});
+    for (const auto& [name, hash] : record.hashes) hashes[name] = hash_to_hex(hash);
+    const Machine& machine = record.machine;
+    return {
+        {"command", record.command},
+        {"scene", {{"name", record.scene_name}, {"file", record.scene_path}}},
+        {"settings",
+         {{"width", record.width},
+          {"height", record.height},
+          {"fps", record.fps},
+          {"frames", record.frames.size()},
+          {"sample_distance_px", record.settings.sample_distance_px},
+          {"splat_factor", record.settings.splat_factor},
+          {"projection", name_of(record.settings.projection)},
+          {"level_of_detail", record.settings.level_of_detail},
+          {"view", record.settings.view == RepresentationView::lit ? "lit" : "kinds"}}},
+        {"machine",
+         {{"system", machine.system},
+          {"processor", machine.processor},
+          {"threads", machine.threads},
+          {"memory_gib", machine.memory_gib},
+          {"compiler", machine.compiler},
+          {"build", machine.build},
+          {"device", record.device},
+          {"driver", record.driver}}},
+        {"load_ms",
+         {{"scene", record.load.scene_ms},
+          {"cook", record.load.cook_ms},
+          {"plants", record.load.plants_ms},
+          {"device", record.load.device_ms},
+          {"upload", record.load.upload_ms},
+          {"first_frame", record.load.first_frame_ms}}},
+        {"figures", std::move(figures)},
+        {"pictures", std::move(pictures)},
+        {"compared", std::move(compared)},
+        {"hashes", std::move(hashes)},
+    };
+}
+
+}  // namespace coppice

@@ -17,9 +17,21 @@ bool carries_leaves(const TreeParameters& tree, const Stem& stem) {
     return stem.level + tree.leaf_levels >= tree.levels.size();
 }
 
-// W&P: leaves of a twig by where it left its parent; of a clone, its share of the whole stem.
-float leaf_weight(const Stem& stem) {
-    return shape_ratio(Shape::tapered_cylindrical, 1.0f - stem.parent_fraction) * (1.0f - stem.first_fraction);
+// W&P: leaves of a twig by where it left its parent; of a clone, its share of the whole stem. By length too, so that
+// the short twigs of a crown's top are not denser than the rest.
+float leaf_weight(const Stem& stem, float mean_length_m) {
+    return shape_ratio(Shape::tapered_cylindrical, 1.0f - stem.parent_fraction) * (1.0f - stem.first_fraction) *
+           (0.25f + 0.75f * stem.length_m / mean_length_m);
+}
+
+float mean_leafy_length_m(const TreeParameters& parameters, const StemTree& tree) {
+    double length_m = 0.0, stems = 0.0;
+    for (const Stem& stem : tree.stems) {
+        if (!carries_leaves(parameters, stem)) continue;
+        length_m += double(stem.length_m);
+        stems += 1.0;
+    }
+    return stems > 0.0 ? float(length_m / stems) : 1.0f;
 }
 
 // The crown as an ellipsoid, to know a leaf's place in it.
@@ -78,9 +90,10 @@ Result<PlantDescription> grow_tree(const TreeParameters& parameters, const std::
     double bark_triangles = 0.0;
     for (const PartDescription& part : plant.parts) bark_triangles += double(part.indices.size() / 3);
 
+    float mean_length_m = mean_leafy_length_m(parameters, tree);
     double weights = 0.0;
     for (const Stem& stem : tree.stems) {
-        if (carries_leaves(parameters, stem)) weights += double(leaf_weight(stem));
+        if (carries_leaves(parameters, stem)) weights += double(leaf_weight(stem, mean_length_m));
     }
     const LeafParameters& leaves = parameters.leaves;
     LeafPlacer placer(leaves);
@@ -101,7 +114,7 @@ Result<PlantDescription> grow_tree(const TreeParameters& parameters, const std::
     for (size_t i = 0; i < tree.stems.size(); ++i) {
         const Stem& stem = tree.stems[i];
         if (!carries_leaves(parameters, stem)) continue;
-        due += each * double(leaf_weight(stem));
+        due += each * double(leaf_weight(stem, mean_length_m));
         if (due * placer.triangles_each() > k_triangle_limit) {
             return fail(ErrorId::limit_exceeded, file, "leaves.count",
                         fmt::format("more than {:.0f} triangles of leaves", k_triangle_limit), "lower the counts");

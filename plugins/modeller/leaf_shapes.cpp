@@ -21,13 +21,11 @@ constexpr vec2 k_lanceolate_points[] = {{0, 0}, {0.5f, 0.36f}, {0.36f, 0.70f}, {
 constexpr std::array<uint8_t, 3> k_ovate_triangles[] = {{0, 1, 2}, {0, 2, 3}};
 
 // Birch: a triangle with a long tip on a broad wedge.
-constexpr vec2 k_birch_points[] = {{0, 0}, {0.36f, 0.12f}, {0.5f, 0.34f}, {0.24f, 0.66f}, {0, 1}};
-constexpr std::array<uint8_t, 3> k_birch_triangles[] = {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}};
+constexpr vec2 k_birch_points[] = {{0, 0}, {0.5f, 0.28f}, {0.22f, 0.66f}, {0, 1}};
 
-// Oak: three lobes a side, widest beyond the middle.
-constexpr vec2 k_oak_points[] = {{0, 0},         {0.27f, 0.20f}, {0.13f, 0.33f}, {0.44f, 0.50f},
-                                 {0.20f, 0.62f}, {0.42f, 0.84f}, {0, 1},         {0, 0.45f}};
-constexpr std::array<uint8_t, 3> k_oak_triangles[] = {{0, 1, 2}, {0, 2, 7}, {2, 3, 4}, {7, 2, 4}, {7, 4, 6}, {4, 5, 6}};
+// Oak: two lobes a side, widest beyond the middle.
+constexpr vec2 k_oak_points[] = {{0, 0}, {0.36f, 0.30f}, {0.19f, 0.45f}, {0.5f, 0.74f}, {0, 1}};
+constexpr std::array<uint8_t, 3> k_oak_triangles[] = {{0, 1, 2}, {0, 2, 4}, {2, 3, 4}};
 
 constexpr vec2 k_heart_points[] = {{0, 0},         {0.22f, -0.13f}, {0.46f, 0.03f}, {0.5f, 0.26f},
                                    {0.30f, 0.64f}, {0, 1},          {0, 0.5f}};
@@ -44,7 +42,7 @@ HalfOutline outline_of(LeafShape shape) {
         case LeafShape::rhombic: return {k_rhombic_points, k_rhombic_triangles};
         case LeafShape::ovate: return {k_ovate_points, k_ovate_triangles};
         case LeafShape::lanceolate: return {k_lanceolate_points, k_ovate_triangles};
-        case LeafShape::birch: return {k_birch_points, k_birch_triangles};
+        case LeafShape::birch: return {k_birch_points, k_ovate_triangles};
         case LeafShape::oak: return {k_oak_points, k_oak_triangles};
         case LeafShape::heart: return {k_heart_points, k_heart_triangles};
         case LeafShape::spoon: return {k_spoon_points, k_spoon_triangles};

@@ -1,6 +1,6 @@
 // The C entry every plugin exports, and the only thing a host and a plugin must agree on before they talk.
-// Rules: structs start with their size, new members go to the end, names of interfaces are strings with a version.
-// A plugin is one shared module with the function `coppice_plugin`.
+// Rules: structs start with their size, new members go to the end, names of interfaces are strings with a
+// version. A plugin is one shared module with the function `coppice_plugin`.
 #pragma once
 #include <stdint.h>
 
@@ -14,7 +14,8 @@ typedef struct CoppiceHost {
     uint32_t size_bytes;
     uint32_t abi;
     void* context;
-    // Makes an interface known. The pointer stays valid until unload. 0: done; -1: the name and version are taken.
+    // Makes an interface known. The pointer stays valid until unload. 0: done; -1: the name and version are
+    // taken.
     int (*provide)(void* context, const char* name, uint32_t version, const void* interface);
     // An interface of this or another plugin, or NULL.
     const void* (*find)(void* context, const char* name, uint32_t version);

@@ -10,6 +10,7 @@
 
 namespace coppice {
 
+// One thread at a time. Plugins talk to one another only through what they provide.
 class Registry {
   public:
     Registry();
@@ -17,9 +18,11 @@ class Registry {
     Registry(const Registry&) = delete;
     Registry& operator=(const Registry&) = delete;
 
-    // name: "vegetation"; looked for as NAME.so in $COPPICE_PLUGIN_PATH (colon-separated), then in ../lib/coppice
-    // beside the program, then beside the runtime library. Loading twice is one loading.
-    // Errors: file_missing (says where it looked), format_unknown (no entry, or another ABI), name_unknown (load failed).
+    // NAME.so is looked for in $COPPICE_PLUGIN_PATH (colon-separated), then in ../lib/coppice beside the
+    // program, then in coppice/ beside the runtime library and beside it. Loading twice is one loading; what
+    // a plugin provided before its loading failed is forgotten. Errors: file_missing (says where it looked),
+    // file_unreadable (the system does not load it), format_unknown (no entry, or another ABI), name_unknown
+    // (no name, or the plugin's load failed).
     Status load(std::string_view name);
 
     // nullptr where nobody provides it.
@@ -32,6 +35,7 @@ class Registry {
 
   private:
     struct Impl;
+    Status start(const std::string& file);
     std::unique_ptr<Impl> impl_;
 };
 

@@ -28,46 +28,46 @@ struct Chunk;
 
 // All chunks of one set of components.
 struct Archetype {
-    static constexpr uint8_t k_absent = 0xff;
+    static constexpr uint32_t k_absent = UINT32_MAX;
 
     ComponentMask mask;
-    std::vector<ComponentId> columns;                  // stored components by id; tags have none
-    std::vector<ComponentId> hash_order;               // hashed components by name hash, with tags
-    std::array<uint8_t, k_component_limit> column_of;  // component -> column, k_absent for tags too
-    std::vector<Chunk*> shared_chunks;                 // all full but the last
-    std::vector<Chunk*> bulk_chunks;                   // order of creation, gaps filled from the end
-    uint32_t shared_capacity = 0;                      // rows of a shared chunk
+    std::vector<ComponentId> columns;     // stored components by id; tags have none
+    std::vector<ComponentId> hash_order;  // hashed components by name hash, with tags
+    // Bytes that the columns before a component's take for one row; k_absent for tags too.
+    std::array<uint32_t, k_component_limit> row_offset;
+    uint32_t row_bytes = 0;             // of all columns
+    uint32_t shared_capacity = 0;       // rows of a shared chunk
+    std::vector<Chunk*> shared_chunks;  // all full but the last
+    std::vector<Chunk*> bulk_chunks;    // order of creation, gaps filled from the end
 };
 
-// The head of a chunk's memory. After it the offset of every column, then the columns, each at a multiple of
-// 64 bytes.
-struct Chunk {
-    static constexpr size_t k_column_alignment = 64;
+// A chunk's head: one cache line, apart from the columns, so that looking up an entity touches few pages.
+struct alignas(64) Chunk {
+    // Capacities are multiples of it. So is each column's place of 16 bytes at least, and of 64 where the
+    // components before it take multiples of 4 bytes.
+    static constexpr uint32_t k_row_multiple = 16;
 
-    size_t size_bytes;     // of the whole allocation
-    uint32_t capacity;     // rows
-    uint32_t slot;         // bulk: place in the table of chunk names
-    uint32_t position;     // place in its archetype's list
+    const Archetype* archetype;
+    std::byte* columns;  // column after column, each of `capacity` rows; a shared chunk's entities come last
+    Entity* entities;    // by row; null in a bulk chunk nobody took a single entity from
+    Entity owner;        // bulk: the entity that speaks for the chunk (its tile); may be none
+    uint32_t count;      // rows in use
+    uint32_t capacity;   // rows
     uint32_t first_index;  // bulk: entity of row 0, while entities is null
     uint32_t generation;   // bulk: of all its entities, while entities is null
-    uint32_t count;        // rows in use
-    Entity owner;          // bulk: the entity that speaks for the chunk (its tile); may be none
-    Entity* entities;      // by row; null in a bulk chunk nobody took a single entity from
-    const Archetype* archetype;
-    // Here: uint32_t column_offset[archetype->columns.size()], in units of k_column_alignment from the
-    // chunk's start.
+    uint32_t slot;         // bulk: place in the table of chunk names
+    uint32_t position;     // place in its archetype's list
 
-    uint32_t* column_offsets() { return reinterpret_cast<uint32_t*>(this + 1); }
-    const uint32_t* column_offsets() const { return reinterpret_cast<const uint32_t*>(this + 1); }
-    std::byte* column(uint32_t column) const {
-        return const_cast<std::byte*>(reinterpret_cast<const std::byte*>(this)) +
-               size_t(column_offsets()[column]) * k_column_alignment;
+    // Requires that the archetype stores it.
+    std::byte* column(ComponentId component) const {
+        return columns + size_t(archetype->row_offset[component]) * capacity;
     }
     // nullptr where the archetype lacks it, and for tags.
     template <class C>
     C* column() const {
-        uint8_t place = archetype->column_of[component_id<C>()];
-        return place == Archetype::k_absent ? nullptr : reinterpret_cast<C*>(column(place));
+        uint32_t offset = archetype->row_offset[component_id<C>()];
+        return offset == Archetype::k_absent ? nullptr
+                                             : reinterpret_cast<C*>(columns + size_t(offset) * capacity);
     }
     Entity entity(uint32_t row) const {
         return entities ? entities[row] : Entity{first_index + row, generation};

@@ -66,7 +66,7 @@ template <class C>
 ComponentId register_type() {
     static_assert(std::is_trivially_copyable_v<C>, "components are copied and moved as bytes");
     static_assert(std::is_trivially_destructible_v<C>, "components are dropped without a destructor call");
-    static_assert(alignof(C) <= 64, "columns start at multiples of 64 bytes");
+    static_assert(alignof(C) <= 16, "columns start at multiples of 16 bytes");
     constexpr bool hashed = ComponentTraits<C>::hashed;
     constexpr uint32_t size_bytes = std::is_empty_v<C> ? 0 : uint32_t(sizeof(C));
     if (hashed && size_bytes && !has_no_padding<C>()) end_with_padding(ComponentTraits<C>::name);

@@ -1,7 +1,6 @@
 #include "runtime/ecs/entity_index.h"
 
 #include <algorithm>
-#include <bit>
 #include <cassert>
 
 namespace coppice {
@@ -88,14 +87,19 @@ Entity EntityIndex::claim(Chunk* chunk, uint32_t row) {
     return {number << k_page_shift | slot, record.generation};
 }
 
-bool EntityIndex::claim_run(Chunk* chunk) {
+bool EntityIndex::has_room(uint32_t count) const {
+    uint32_t size_class = size_class_of(count);
+    return count == 0 || !free_runs_[size_class].empty() ||
+           1u << size_class <= page_limit_ - std::min(page_limit_, uint32_t(pages_.size()));
+}
+
+void EntityIndex::claim_run(Chunk* chunk) {
     chunk->first_index = 0;
     chunk->generation = 0;
-    if (chunk->count == 0) return true;
+    if (chunk->count == 0) return;
+    assert(has_room(chunk->count) && "ask has_room first");
     uint32_t page_count = (chunk->count - 1) / k_page_size + 1;
-    uint32_t size_class = uint32_t(std::bit_width(page_count - 1));
-    uint32_t first = claim_pages(size_class);
-    if (first == k_none) return false;
+    uint32_t first = claim_pages(size_class_of(chunk->count));
     uint32_t generation = pages_[first].generation;
     for (uint32_t i = 0; i < page_count; ++i) {
         Page& page = pages_[first + i];
@@ -107,7 +111,6 @@ bool EntityIndex::claim_run(Chunk* chunk) {
     alive_count_ += chunk->count;
     chunk->first_index = first << k_page_shift;
     chunk->generation = generation;
-    return true;
 }
 
 void EntityIndex::release_run(const Chunk* chunk) {

@@ -6,6 +6,7 @@
 // their entities is alive.
 #pragma once
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <vector>
 #include "runtime/ecs/chunk.h"
@@ -47,8 +48,9 @@ class EntityIndex {
 
     // One loose entity. None when the indices are used up.
     Entity claim(Chunk* chunk, uint32_t row);
-    // All entities of a bulk chunk: sets its first_index and generation. False when the indices are used up.
-    bool claim_run(Chunk* chunk);
+    // All entities of a bulk chunk: sets its first_index and generation. Requires has_room(chunk->count).
+    void claim_run(Chunk* chunk);
+    bool has_room(uint32_t count) const;
     // Gives the chunk's entities an id column and a record each.
     void add_records(Chunk* chunk);
     // The entity must be alive and have a record.
@@ -86,6 +88,9 @@ class EntityIndex {
     };
     static constexpr uint32_t k_none = UINT32_MAX;
 
+    static uint32_t size_class_of(uint32_t count) {
+        return count ? uint32_t(std::bit_width((count - 1) >> k_page_shift)) : 0;
+    }
     uint32_t claim_pages(uint32_t size_class);  // first page, or k_none
     void release_pages(uint32_t first_page);
     void link(uint32_t page);

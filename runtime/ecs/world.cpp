@@ -8,31 +8,23 @@
 
 namespace coppice {
 namespace {
-constexpr size_t k_align = Chunk::k_column_alignment;
-
-constexpr size_t round_up(size_t size_bytes) { return (size_bytes + k_align - 1) / k_align * k_align; }
-
-size_t head_bytes(const Archetype& archetype) {
-    return round_up(sizeof(Chunk) + archetype.columns.size() * sizeof(uint32_t));
+size_t chunk_bytes(const Archetype& archetype, size_t capacity, bool shared) {
+    return capacity * (archetype.row_bytes + (shared ? sizeof(Entity) : 0));
 }
 
-size_t chunk_bytes(const Archetype& archetype, size_t capacity, bool with_entities) {
-    size_t size = head_bytes(archetype);
-    for (ComponentId component : archetype.columns)
-        size += round_up(capacity * component_info(component).size_bytes);
-    return with_entities ? size + round_up(capacity * sizeof(Entity)) : size;
+std::byte* value_at(const Chunk& chunk, ComponentId component, uint32_t row) {
+    return chunk.column(component) + size_t(row) * component_info(component).size_bytes;
 }
 
+// Components that only `to` has become zero.
 void copy_row(const Chunk& from, uint32_t from_row, const Chunk& to, uint32_t to_row) {
-    const std::vector<ComponentId>& columns = to.archetype->columns;
-    for (uint32_t column = 0; column < columns.size(); ++column) {
-        size_t size = component_info(columns[column]).size_bytes;
-        std::byte* target = to.column(column) + to_row * size;
-        uint8_t source = from.archetype->column_of[columns[column]];
-        if (source == Archetype::k_absent)
-            std::memset(target, 0, size);
+    for (ComponentId component : to.archetype->columns) {
+        std::byte* target = value_at(to, component, to_row);
+        size_t size = component_info(component).size_bytes;
+        if (from.archetype->mask[component])
+            std::memcpy(target, value_at(from, component, from_row), size);
         else
-            std::memcpy(target, from.column(source) + from_row * size, size);
+            std::memset(target, 0, size);
     }
 }
 }  // namespace
@@ -43,13 +35,9 @@ World::World(const WorldSettings& settings)
       index_(pool_, settings.index_page_limit, settings.last_generation) {}
 
 World::~World() {
-    for (auto& archetype : archetypes_) {
-        for (Chunk* chunk : archetype->shared_chunks) pool_.release(chunk, chunk->size_bytes);
-        for (Chunk* chunk : archetype->bulk_chunks) {
-            if (chunk->entities) pool_.release(chunk->entities, sizeof(Entity) * chunk->capacity);
-            pool_.release(chunk, chunk->size_bytes);
-        }
-    }
+    for (auto& archetype : archetypes_)
+        for (auto* chunks : {&archetype->shared_chunks, &archetype->bulk_chunks})
+            for (Chunk* chunk : *chunks) drop_chunk(chunk);
 }
 
 Archetype& World::archetype_of(const ComponentMask& mask) {
@@ -58,15 +46,14 @@ Archetype& World::archetype_of(const ComponentMask& mask) {
     archetypes_.push_back(std::make_unique<Archetype>());
     place = archetypes_.back().get();
     place->mask = mask;
-    place->column_of.fill(Archetype::k_absent);
-    size_t row_bytes = sizeof(Entity);
+    place->row_offset.fill(Archetype::k_absent);
     for (ComponentId component = 0; component < k_component_limit; ++component) {
         if (!mask[component]) continue;
         const ComponentInfo& info = component_info(component);
         if (info.size_bytes) {
-            place->column_of[component] = uint8_t(place->columns.size());
             place->columns.push_back(component);
-            row_bytes += info.size_bytes;
+            place->row_offset[component] = place->row_bytes;
+            place->row_bytes += info.size_bytes;
         }
         if (info.hashed) place->hash_order.push_back(component);
     }
@@ -74,28 +61,35 @@ Archetype& World::archetype_of(const ComponentMask& mask) {
         const ComponentInfo &x = component_info(a), &y = component_info(b);
         return x.name_hash != y.name_hash ? x.name_hash < y.name_hash : x.name < y.name;
     });
-    // Every column may lose up to one alignment; at least one row, however small the chunk is set.
-    size_t fixed = head_bytes(*place) + (place->columns.size() + 1) * k_align;
-    size_t room = settings_.shared_chunk_bytes > fixed ? settings_.shared_chunk_bytes - fixed : 0;
-    place->shared_capacity = uint32_t(std::clamp<size_t>(room / row_bytes, 1, UINT32_MAX));
+    // At least the smallest capacity, however small the chunk is set.
+    size_t rows = settings_.shared_chunk_bytes / (place->row_bytes + sizeof(Entity));
+    place->shared_capacity = uint32_t(std::clamp<size_t>(rows, Chunk::k_row_multiple, 1u << 30)) /
+                             Chunk::k_row_multiple * Chunk::k_row_multiple;
     return *place;
 }
 
-Chunk* World::make_chunk(const Archetype& archetype, uint32_t capacity, bool with_entities) {
-    size_t size = chunk_bytes(archetype, capacity, with_entities);
-    auto* memory = static_cast<std::byte*>(pool_.allocate(size));
-    Chunk* chunk = new (memory) Chunk{};
-    chunk->size_bytes = size;
-    chunk->capacity = capacity;
-    chunk->slot = k_shared;
-    chunk->archetype = &archetype;
-    size_t offset = head_bytes(archetype);
-    for (size_t column = 0; column < archetype.columns.size(); ++column) {
-        chunk->column_offsets()[column] = uint32_t(offset / k_align);
-        offset += round_up(size_t(capacity) * component_info(archetype.columns[column]).size_bytes);
+Chunk* World::make_chunk(const Archetype& archetype, uint32_t row_count, bool shared) {
+    if (free_heads_.empty()) {
+        heads_.push_back(std::make_unique<Chunk[]>(k_heads_per_block));
+        for (size_t i = k_heads_per_block; i-- > 0;) free_heads_.push_back(&heads_.back()[i]);
     }
-    if (with_entities) chunk->entities = reinterpret_cast<Entity*>(memory + offset);
+    size_t capacity =
+        (size_t(row_count) + Chunk::k_row_multiple - 1) / Chunk::k_row_multiple * Chunk::k_row_multiple;
+    size_t size = chunk_bytes(archetype, capacity, shared);
+    auto* columns = size ? static_cast<std::byte*>(pool_.allocate(size)) : nullptr;
+    Chunk* chunk = free_heads_.back();
+    free_heads_.pop_back();
+    *chunk = {.archetype = &archetype, .columns = columns, .capacity = uint32_t(capacity), .slot = k_shared};
+    if (shared) chunk->entities = reinterpret_cast<Entity*>(columns + capacity * archetype.row_bytes);
     return chunk;
+}
+
+void World::drop_chunk(Chunk* chunk) {
+    bool shared = chunk->slot == k_shared;
+    if (!shared && chunk->entities) pool_.release(chunk->entities, sizeof(Entity) * chunk->capacity);
+    if (chunk->columns)
+        pool_.release(chunk->columns, chunk_bytes(*chunk->archetype, chunk->capacity, shared));
+    free_heads_.push_back(chunk);
 }
 
 // The row's components and entity are not set.
@@ -122,7 +116,7 @@ void World::remove_row(EntityPlace place) {
     --last->count;
     if (last->slot == k_shared && last->count == 0) {
         chunks.pop_back();
-        pool_.release(last, last->size_bytes);
+        drop_chunk(last);
     }
 }
 
@@ -136,11 +130,8 @@ Entity World::create_raw(const ComponentMask& mask) {
         remove_row(place);
         return {};
     }
-    const std::vector<ComponentId>& columns = place.chunk->archetype->columns;
-    for (uint32_t column = 0; column < columns.size(); ++column) {
-        size_t size = component_info(columns[column]).size_bytes;
-        std::memset(place.chunk->column(column) + place.row * size, 0, size);
-    }
+    for (ComponentId component : place.chunk->archetype->columns)
+        std::memset(value_at(*place.chunk, component, place.row), 0, component_info(component).size_bytes);
     return entity;
 }
 
@@ -173,8 +164,7 @@ bool World::add_raw(Entity entity, ComponentId component, const void* value) {
         place = index_.find(entity);
     }
     if (size_t size = component_info(component).size_bytes) {
-        std::byte* target =
-            place.chunk->column(place.chunk->archetype->column_of[component]) + place.row * size;
+        std::byte* target = value_at(*place.chunk, component, place.row);
         value ? std::memcpy(target, value, size) : std::memset(target, 0, size);
     }
     return true;
@@ -196,15 +186,16 @@ bool World::has_raw(Entity entity, ComponentId component) const {
 
 ChunkId World::create_chunk_raw(const ComponentMask& mask, uint32_t count, Entity owner) {
     assert_editable();
+    // Before memory is asked for, which an absurd count might get or not.
+    if (count > k_bulk_limit || !index_.has_room(count)) {
+        refused_count_ += count;
+        return {};
+    }
     Archetype& archetype = archetype_of(mask);
     Chunk* chunk = make_chunk(archetype, count, false);
     chunk->count = count;
     chunk->owner = owner;
-    if (!index_.claim_run(chunk)) {
-        refused_count_ += count;
-        pool_.release(chunk, chunk->size_bytes);
-        return {};
-    }
+    index_.claim_run(chunk);
     if (free_slots_.empty()) {
         free_slots_.push_back(uint32_t(slots_.size()));
         slots_.emplace_back();
@@ -223,7 +214,6 @@ bool World::destroy_chunk(ChunkId id) {
     if (!chunk) return false;
     if (chunk->entities) {
         for (uint32_t row = 0; row < chunk->count; ++row) index_.release(chunk->entities[row]);
-        pool_.release(chunk->entities, sizeof(Entity) * chunk->capacity);
     } else {
         index_.release_run(chunk);
     }
@@ -235,7 +225,7 @@ bool World::destroy_chunk(ChunkId id) {
     slot.chunk = nullptr;
     slot.generation = slot.generation == settings_.last_generation ? 0 : slot.generation + 1;
     if (slot.generation) free_slots_.push_back(id.slot);
-    pool_.release(chunk, chunk->size_bytes);
+    drop_chunk(chunk);
     return true;
 }
 
@@ -252,8 +242,7 @@ const QueryMatches& World::matches(const ComponentMask& all, const ComponentMask
 }
 
 uint64_t World::hash() const {
-    // A sum of well mixed words by entity does not depend on the order they come in, so nothing needs
-    // sorting.
+    // A sum of one well mixed word an entity does not depend on their order, so nothing needs sorting.
     std::atomic<uint64_t> sum{0};
     auto hash_chunk = [&](const Chunk& chunk) {
         uint64_t chunk_sum = 0;
@@ -263,9 +252,7 @@ uint64_t World::hash() const {
                 const ComponentInfo& info = component_info(component);
                 hash = hash_combine(hash, info.name_hash);
                 if (info.size_bytes)
-                    hash = hash_bytes(
-                        chunk.column(chunk.archetype->column_of[component]) + size_t(row) * info.size_bytes,
-                        info.size_bytes, hash);
+                    hash = hash_bytes(value_at(chunk, component, row), info.size_bytes, hash);
             }
             chunk_sum += hash;
         }
@@ -281,7 +268,9 @@ uint64_t World::hash() const {
 
 size_t World::memory_bytes() const {
     size_t size = sizeof(*this) + pool_.used_bytes() + pool_.kept_bytes() + index_.memory_bytes() +
-                  slots_.capacity() * sizeof(Slot) + free_slots_.capacity() * sizeof(uint32_t);
+                  heads_.size() * k_heads_per_block * sizeof(Chunk) +
+                  free_heads_.capacity() * sizeof(Chunk*) + slots_.capacity() * sizeof(Slot) +
+                  free_slots_.capacity() * sizeof(uint32_t);
     for (const auto& archetype : archetypes_)
         size += sizeof(Archetype) +
                 (archetype->shared_chunks.capacity() + archetype->bulk_chunks.capacity()) * sizeof(Chunk*) +

@@ -45,6 +45,8 @@ struct QueryMatches {
 
 class World {
   public:
+    static constexpr uint32_t k_bulk_limit = 1u << 31;  // entities of one bulk chunk
+
     explicit World(const WorldSettings& settings = {});
     ~World();
     World(const World&) = delete;
@@ -94,8 +96,9 @@ class World {
     // defined state (empty for tags). All of it must be written before the next hash() or structural edit.
     //     auto [id, positions, sizes] = world.create_chunk<Position, Size>(1000, tile);
     // The owner is the entity that carries what the whole chunk has in common (bounds, visibility): see Owner
-    // in query.h. No name comes back when the indices are used up. One entity taken out costs about 24 bytes
-    // for each entity of its chunk, once.
+    // in query.h; it may keep the name in a component of its own. No name comes back when the indices are
+    // used up, or for more than k_bulk_limit entities. One entity taken out costs about 24 bytes for each of
+    // its chunk, once. Throws std::bad_alloc as new does, and has changed nothing then.
     template <class... Cs>
     std::tuple<ChunkId, std::span<Cs>...> create_chunk(uint32_t count, Entity owner = {}) {
         ChunkId id = create_chunk_raw(component_mask<Cs...>(), count, owner);
@@ -123,10 +126,9 @@ class World {
     template <class... Terms>
     Query<Terms...> query() const;
 
-    // Covers, for every live entity: its handle, the owner of its chunk, which components it has, and the
-    // bytes of the hashed ones (a float's bits: 0 and -0 differ). Independent of the order of chunks, of
-    // rows, of archetypes and of the number of threads. Does not cover what is recorded in Commands, free
-    // indices, or names of chunks.
+    // Covers, for every live entity: its handle, its chunk's owner, which hashed components it has, and their
+    // bytes (a float's bits: 0 and -0 differ). Independent of the order of chunks, rows and archetypes and of
+    // the number of threads. Does not cover what is recorded in Commands, free indices, or names of chunks.
     uint64_t hash() const;
 
     uint64_t entity_count() const { return index_.alive_count(); }
@@ -176,7 +178,8 @@ class World {
             return hash(key.all) * 31 + hash(key.none);
         }
     };
-    static constexpr uint32_t k_shared = UINT32_MAX;
+    static constexpr uint32_t k_shared = UINT32_MAX;  // slot of a shared chunk
+    static constexpr size_t k_heads_per_block = 64;
 
     template <class C>
     C* find(Entity entity) const {
@@ -203,17 +206,19 @@ class World {
         assert(iterations_ == 0 && "structural edit while a query iterates: record it in Commands instead");
     }
     Archetype& archetype_of(const ComponentMask& mask);
-    Chunk* make_chunk(const Archetype& archetype, uint32_t capacity, bool with_entities);
+    Chunk* make_chunk(const Archetype& archetype, uint32_t row_count, bool shared);
+    void drop_chunk(Chunk* chunk);
     EntityPlace append_row(Archetype& archetype);
     void remove_row(EntityPlace place);
     void move_entity(Entity entity, EntityPlace from, const ComponentMask& mask);
-    void drop_chunk(Chunk* chunk);
 
     WorldSettings settings_;
     ChunkPool pool_;
     EntityIndex index_;
     std::vector<std::unique_ptr<Archetype>> archetypes_;
     std::unordered_map<ComponentMask, Archetype*> archetype_by_mask_;
+    std::vector<std::unique_ptr<Chunk[]>> heads_;  // k_heads_per_block each
+    std::vector<Chunk*> free_heads_;
     std::vector<Slot> slots_;
     std::vector<uint32_t> free_slots_;
     uint64_t refused_count_ = 0;

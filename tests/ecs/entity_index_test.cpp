@@ -59,7 +59,8 @@ TEST(EntityIndex, SaysWhenItIsFull) {
     auto [none, no_ages] = world.create_chunk<Age>(1);
     EXPECT_FALSE(none);
     EXPECT_TRUE(no_ages.empty());
-    EXPECT_EQ(world.refused_count(), 4099u);
+    EXPECT_FALSE(std::get<0>(world.create_chunk<Age>(UINT32_MAX)));
+    EXPECT_EQ(world.refused_count(), 4099ull + UINT32_MAX);
     EXPECT_EQ(world.entity_count(), 4096u);
     EXPECT_FALSE(world.alive({4096, 1}));
     world.destroy_chunk(all);

@@ -6,8 +6,8 @@
 namespace coppice {
 
 // 1 M, then 10 M entities of 32 bytes in three components, in tiles of 1,000: create and destroy, update,
-// random access, memory. {"name": "ecs", "figures": [{name, value, unit, reach, holds, plain_arrays}, ...]};
-// less is better in all of them. One thread, half a minute, about 1.2 GB. Prints nothing. Error:
+// random access, memory. {"name": "ecs", "figures": [{name, value, unit, reach, holds}, ...]}. Medians of
+// warm rounds in which both take turns. One thread, a few seconds, about 0.7 GB. Prints nothing. Error:
 // limit_exceeded where memory is short.
 Result<nlohmann::json> bench_ecs();
 

@@ -44,6 +44,9 @@ TEST(Allocation, TheCounterCounts) {
 }
 
 TEST(Allocation, WarmQueriesAllocateNothing) {
+#if defined(__SANITIZE_THREAD__)
+    GTEST_SKIP() << "loops start threads under the thread sanitizer";
+#endif
     World world;
     Entity tile = world.create(Tile{1, 0});
     auto [id, ages, positions] = world.create_chunk<Age, Position>(5000, tile);
@@ -67,6 +70,9 @@ TEST(Allocation, WarmQueriesAllocateNothing) {
 }
 
 TEST(Allocation, WarmFramesOfAScheduleAllocateNothing) {
+#if defined(__SANITIZE_THREAD__)
+    GTEST_SKIP() << "loops start threads under the thread sanitizer";
+#endif
     World world;
     Schedule schedule(world);
     ChunkId tile;

@@ -56,7 +56,7 @@ int exit_code_of(ErrorId id);
 
 }  // namespace coppice
 
-// Hands an error on, or unwraps: COPPICE_TRY(auto plant, load_plant(path));
+// Hands an error on, or unwraps: COPPICE_TRY(auto file, MappedFile::open(path));
 #define COPPICE_JOIN_(a, b) a##b
 #define COPPICE_JOIN(a, b) COPPICE_JOIN_(a, b)
 #define COPPICE_TRY_(temporary, declaration, expression)                       \

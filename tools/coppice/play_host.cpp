@@ -87,8 +87,9 @@ Result<std::unique_ptr<PlayHost>> PlayHost::create(const PlayOptions& options,
     Stopwatch scene_clock;
     const auto* terrain = host->registry.find<TerrainInterface>(k_terrain_interface, k_terrain_version);
     COPPICE_TRY(host->scene, load_scene(options.scene, {terrain}));
-    if (!options.path.empty())
+    if (!options.path.empty()) {
         COPPICE_TRY(host->scene.camera_path, load_camera_path(options.path, host->scene.terrain.get()));
+    }
     COPPICE_TRY(const uint64_t scene_hash, hash_file(options.scene));
     host->hashes.emplace_back("scene file", scene_hash);
     host->load.scene_ms = scene_clock.ms();

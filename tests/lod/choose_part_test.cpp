@@ -14,6 +14,7 @@ PackedPart leaf_part(uint32_t triangles) {
     part.point_count = 2 * triangles;
     part.area_m2 = 2.0f;
     part.projected_area_m2.m = {1.0f, 1.0f, 1.0f, 0.0f, 0.0f, 0.0f};  // 1 m2 from everywhere
+    part.coverage_gain.fill(1.0f);
     return part;
 }
 
@@ -28,6 +29,7 @@ PackedPart twig_part() {
     part.area_m2 = 2.0f;
     part.projected_area_m2.m = {0.16f, 0.16f, 0.16f, 0.0f, 0.0f, 0.0f};  // squares: 0.4 m2 from everywhere
     part.projected_length_m.m = {1521.0f, 1521.0f, 1521.0f, 0.0f, 0.0f, 0.0f};
+    part.coverage_gain.fill(1.0f);
     return part;
 }
 

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <bit>
+#include <tuple>
 #include <fmt/format.h>
 #include "plugins/vegetation/cook/classify.h"
 #include "plugins/vegetation/cook/clean_mesh.h"
 #include "plugins/vegetation/cook/closed_share.h"
 #include "plugins/vegetation/cook/importance.h"
+#include "plugins/vegetation/cook/measure_coverage.h"
 #include "plugins/vegetation/cook/measure_projection.h"
 #include "plugins/vegetation/cook/openness.h"
 #include "plugins/vegetation/cook/space_curve.h"
@@ -36,17 +38,16 @@ PackedVertex pack_vertex(vec3 position, const Surface& surface, uint32_t dither)
     return {position.x, position.y, position.z, encode_surface(surface, dither)};
 }
 
-void measure_area_and_color(CookPart& part) {
-    const PartDescription& mesh = part.shape.part;
+std::pair<double, vec3> measure_area_and_color(const PartDescription& mesh) {
     std::vector<double> areas = triangle_areas(mesh);
     dvec3 color(0);
-    part.area_m2 = 0.0;
+    double area_m2 = 0.0;
     for (size_t t = 0; t < areas.size(); ++t) {
-        part.area_m2 += areas[t];
+        area_m2 += areas[t];
         for (size_t k = 0; k < 3; ++k)
             color += dvec3(mesh.vertices[mesh.indices[3 * t + k]].color_linear) * (areas[t] / 3.0);
     }
-    part.mean_color_linear = vec3(color * (1.0 / part.area_m2));
+    return {area_m2, vec3(color * (1.0 / area_m2))};
 }
 
 // Appends one part to the plant. seed: of this part.
@@ -83,6 +84,10 @@ class PartPacker {
             packed_.bounds_min[axis] = bounds_.min[axis];
             packed_.bounds_max[axis] = bounds_.max[axis];
         }
+        packed_.coverage_gain = measure_coverage_gain(
+            packed_, std::span(plant_.triangle_vertices).subspan(3 * size_t(packed_.first_triangle)),
+            std::span(plant_.points).subspan(packed_.first_point),
+            std::span(plant_.line_vertices).subspan(2 * size_t(packed_.first_line)));
         plant_.bounds_plant.include(bounds_);
         plant_.parts.push_back(packed_);
     }
@@ -252,26 +257,26 @@ Result<std::vector<std::byte>> cook_plant(const PlantDescription& plant, const C
     Progress progress("cooking " + plant.name, 2 * triangle_count);
     std::vector<std::vector<uint32_t>> welded(meshes.size());
     std::vector<bool> closed;
+    std::vector<ColoredArea> colors;
     for (size_t i = 0; i < meshes.size(); ++i) {
         welded[i] = weld_positions(meshes[i].vertices);
         closed.push_back(closed_share(meshes[i], welded[i]) >= k_closed_share);
+        auto [area_m2, mean_color] = measure_area_and_color(meshes[i]);
+        colors.push_back({mean_color, area_m2, meshes[i].importance});
     }
     OpennessGrid openness(meshes, closed);
+    std::vector<float> importance = choose_importance(colors);
     std::vector<CookPart> parts;
-    std::vector<ColoredArea> colors;
     for (size_t i = 0; i < meshes.size(); ++i) {
         uint64_t steps = meshes[i].indices.size() / 3;
         for (SlenderPart& shape : classify_part(std::move(meshes[i]), welded[i], closed[i])) {
-            CookPart part{std::move(shape), closed[i], 0.0, vec3(0), 1.0f};
-            measure_area_and_color(part);
-            colors.push_back({part.mean_color_linear, part.area_m2, part.shape.part.importance});
+            CookPart part{std::move(shape), closed[i], 0.0, vec3(0), importance[i]};
+            std::tie(part.area_m2, part.mean_color_linear) = measure_area_and_color(part.shape.part);
             parts.push_back(std::move(part));
         }
         progress.advance(steps);
     }
-    std::vector<float> importance = choose_importance(colors);
     for (size_t i = 0; i < parts.size(); ++i) {
-        parts[i].importance = importance[i];
         PartPacker(parts[i], openness, settings, hash_combine(settings.seed, i), blocks).run();
         progress.advance(parts[i].shape.part.indices.size() / 3);
     }

@@ -60,8 +60,13 @@ PartChoice choose_lines(const PackedPart& part, float projected_area_px2, float 
 PartChoice choose_part(const PackedPart& part, const PlantView& view, const FrameSettings& settings, float chance) {
     if (!settings.level_of_detail) return all_triangles(part);
     float area_px2 = projected_area_px2(part, view, settings.projection);
-    if (part.kind == PackedPartKind::points) return choose_points(part, area_px2, settings, chance);
+    bool measured = settings.projection == ProjectionMode::measured;
+    if (part.kind == PackedPartKind::points) {
+        if (measured && part.point_count > 0) area_px2 *= gain_at(part, area_px2 / float(part.point_count));
+        return choose_points(part, area_px2, settings, chance);
+    }
     float length_px = projected_length_px(part, view, settings.projection);
+    if (measured && length_px > 0.0f) area_px2 *= gain_at(part, area_px2 / length_px);
     return choose_lines(part, area_px2, length_px, view.pixels_per_meter, settings, chance);
 }
 

@@ -8,7 +8,7 @@ namespace coppice {
 enum class ProjectionMode : uint8_t {
     printed,    // half the area and half the length, as in the paper
     isotropic,  // half the area, pi/4 of the length
-    measured,   // the cook's fit for the direction of view
+    measured,   // the cook's fit for the direction of view, times its coverage gain
 };
 
 enum class RepresentationView : uint8_t {

@@ -32,6 +32,10 @@ struct DirectionForm {
 
 enum class PackedPartKind : uint32_t { points = 0, lines = 1 };
 
+// Coverage gains at log2(fill) = -(k_gain_levels - 1) ... 0, where fill is the projected area in square pixels over the
+// number of points, or over the projected length of the lines in pixels: how finely the part is resolved.
+inline constexpr uint32_t k_gain_levels = 10;
+
 // One part, or one octree cell's share of a part. 256 bytes.
 struct PackedPart {
     char name[32];        // UTF-8, zero-terminated
@@ -50,9 +54,13 @@ struct PackedPart {
     DirectionForm projected_area_m2;   // of what faces the viewer: half of a closed surface
     DirectionForm projected_length_m;  // of the lines
     float mean_color_linear[3];
-    uint32_t reserved[21];
+    std::array<float, k_gain_levels> coverage_gain;  // cook/measure_coverage.h
+    uint32_t reserved[11];
 };
 static_assert(sizeof(PackedPart) == 256);
+
+// The part's coverage gain at a fill > 0, between the levels by (piecewise linear) logarithm. In [0.25, 4].
+float gain_at(const PackedPart& part, float fill);
 
 struct Plant {
     std::string name;

@@ -30,10 +30,17 @@ struct Chunk;
 struct Archetype {
     static constexpr uint32_t k_absent = UINT32_MAX;
 
+    struct Column {
+        ComponentId component;
+        uint32_t size_bytes;  // of one value; 0: a tag
+        uint32_t row_offset;  // bytes that the columns before take for one row
+        uint64_t name_hash;
+    };
+
     ComponentMask mask;
-    std::vector<ComponentId> columns;     // stored components by id; tags have none
-    std::vector<ComponentId> hash_order;  // hashed components by name hash, with tags
-    // Bytes that the columns before a component's take for one row; k_absent for tags too.
+    std::vector<Column> columns;     // by component; tags have none
+    std::vector<Column> hash_order;  // hashed components by name hash, with tags
+    // Column::row_offset by component; k_absent for tags too.
     std::array<uint32_t, k_component_limit> row_offset;
     uint32_t row_bytes = 0;             // of all columns
     uint32_t shared_capacity = 0;       // rows of a shared chunk
@@ -58,9 +65,11 @@ struct alignas(64) Chunk {
     uint32_t slot;         // bulk: place in the table of chunk names
     uint32_t position;     // place in its archetype's list
 
-    // Requires that the archetype stores it.
-    std::byte* column(ComponentId component) const {
-        return columns + size_t(archetype->row_offset[component]) * capacity;
+    std::byte* value(uint32_t row_offset, uint32_t size_bytes, uint32_t row) const {
+        return columns + size_t(row_offset) * capacity + size_t(row) * size_bytes;
+    }
+    std::byte* value(const Archetype::Column& column, uint32_t row) const {
+        return value(column.row_offset, column.size_bytes, row);
     }
     // nullptr where the archetype lacks it, and for tags.
     template <class C>

@@ -12,19 +12,15 @@ size_t chunk_bytes(const Archetype& archetype, size_t capacity, bool shared) {
     return capacity * (archetype.row_bytes + (shared ? sizeof(Entity) : 0));
 }
 
-std::byte* value_at(const Chunk& chunk, ComponentId component, uint32_t row) {
-    return chunk.column(component) + size_t(row) * component_info(component).size_bytes;
-}
-
 // Components that only `to` has become zero.
 void copy_row(const Chunk& from, uint32_t from_row, const Chunk& to, uint32_t to_row) {
-    for (ComponentId component : to.archetype->columns) {
-        std::byte* target = value_at(to, component, to_row);
-        size_t size = component_info(component).size_bytes;
-        if (from.archetype->mask[component])
-            std::memcpy(target, value_at(from, component, from_row), size);
+    for (const Archetype::Column& column : to.archetype->columns) {
+        std::byte* target = to.value(column, to_row);
+        uint32_t offset = from.archetype->row_offset[column.component];
+        if (offset == Archetype::k_absent)
+            std::memset(target, 0, column.size_bytes);
         else
-            std::memset(target, 0, size);
+            std::memcpy(target, from.value(offset, column.size_bytes, from_row), column.size_bytes);
     }
 }
 }  // namespace
@@ -41,26 +37,31 @@ World::~World() {
 }
 
 Archetype& World::archetype_of(const ComponentMask& mask) {
+    if (last_archetype_ && last_archetype_->mask == mask) return *last_archetype_;
     Archetype*& place = archetype_by_mask_[mask];
+    last_archetype_ = place;
     if (place) return *place;
     archetypes_.push_back(std::make_unique<Archetype>());
-    place = archetypes_.back().get();
+    place = last_archetype_ = archetypes_.back().get();
     place->mask = mask;
     place->row_offset.fill(Archetype::k_absent);
     for (ComponentId component = 0; component < k_component_limit; ++component) {
         if (!mask[component]) continue;
         const ComponentInfo& info = component_info(component);
+        Archetype::Column column = {component, info.size_bytes, place->row_bytes, info.name_hash};
         if (info.size_bytes) {
-            place->columns.push_back(component);
-            place->row_offset[component] = place->row_bytes;
+            place->columns.push_back(column);
+            place->row_offset[component] = column.row_offset;
             place->row_bytes += info.size_bytes;
         }
-        if (info.hashed) place->hash_order.push_back(component);
+        if (info.hashed) place->hash_order.push_back(column);
     }
-    std::sort(place->hash_order.begin(), place->hash_order.end(), [](ComponentId a, ComponentId b) {
-        const ComponentInfo &x = component_info(a), &y = component_info(b);
-        return x.name_hash != y.name_hash ? x.name_hash < y.name_hash : x.name < y.name;
-    });
+    std::sort(place->hash_order.begin(), place->hash_order.end(),
+              [](const Archetype::Column& a, const Archetype::Column& b) {
+                  return a.name_hash != b.name_hash
+                             ? a.name_hash < b.name_hash
+                             : component_info(a.component).name < component_info(b.component).name;
+              });
     // At least the smallest capacity, however small the chunk is set.
     size_t rows = settings_.shared_chunk_bytes / (place->row_bytes + sizeof(Entity));
     place->shared_capacity = uint32_t(std::clamp<size_t>(rows, Chunk::k_row_multiple, 1u << 30)) /
@@ -120,18 +121,24 @@ void World::remove_row(EntityPlace place) {
     }
 }
 
-Entity World::create_raw(const ComponentMask& mask) {
+Entity World::create_row(const ComponentMask& mask, EntityPlace& place) {
     assert_editable();
-    EntityPlace place = append_row(archetype_of(mask));
+    place = append_row(archetype_of(mask));
     Entity entity = index_.claim(place.chunk, place.row);
     place.chunk->entities[place.row] = entity;
     if (!entity) {
         ++refused_count_;
         remove_row(place);
-        return {};
     }
-    for (ComponentId component : place.chunk->archetype->columns)
-        std::memset(value_at(*place.chunk, component, place.row), 0, component_info(component).size_bytes);
+    return entity;
+}
+
+Entity World::create_raw(const ComponentMask& mask) {
+    EntityPlace place;
+    Entity entity = create_row(mask, place);
+    if (entity)
+        for (const Archetype::Column& column : place.chunk->archetype->columns)
+            std::memset(place.chunk->value(column, place.row), 0, column.size_bytes);
     return entity;
 }
 
@@ -163,8 +170,9 @@ bool World::add_raw(Entity entity, ComponentId component, const void* value) {
         move_entity(entity, place, mask.set(component));
         place = index_.find(entity);
     }
-    if (size_t size = component_info(component).size_bytes) {
-        std::byte* target = value_at(*place.chunk, component, place.row);
+    if (uint32_t size = component_info(component).size_bytes) {
+        std::byte* target =
+            place.chunk->value(place.chunk->archetype->row_offset[component], size, place.row);
         value ? std::memcpy(target, value, size) : std::memset(target, 0, size);
     }
     return true;
@@ -248,11 +256,9 @@ uint64_t World::hash() const {
         uint64_t chunk_sum = 0;
         for (uint32_t row = 0; row < chunk.count; ++row) {
             uint64_t hash = hash_combine(chunk.entity(row).bits(), chunk.owner.bits());
-            for (ComponentId component : chunk.archetype->hash_order) {
-                const ComponentInfo& info = component_info(component);
-                hash = hash_combine(hash, info.name_hash);
-                if (info.size_bytes)
-                    hash = hash_bytes(value_at(chunk, component, row), info.size_bytes, hash);
+            for (const Archetype::Column& column : chunk.archetype->hash_order) {
+                hash = hash_combine(hash, column.name_hash);
+                if (column.size_bytes) hash = hash_bytes(chunk.value(column, row), column.size_bytes, hash);
             }
             chunk_sum += hash;
         }
@@ -272,9 +278,10 @@ size_t World::memory_bytes() const {
                   free_heads_.capacity() * sizeof(Chunk*) + slots_.capacity() * sizeof(Slot) +
                   free_slots_.capacity() * sizeof(uint32_t);
     for (const auto& archetype : archetypes_)
-        size += sizeof(Archetype) +
-                (archetype->shared_chunks.capacity() + archetype->bulk_chunks.capacity()) * sizeof(Chunk*) +
-                (archetype->columns.capacity() + archetype->hash_order.capacity()) * sizeof(ComponentId);
+        size +=
+            sizeof(Archetype) +
+            (archetype->shared_chunks.capacity() + archetype->bulk_chunks.capacity()) * sizeof(Chunk*) +
+            (archetype->columns.capacity() + archetype->hash_order.capacity()) * sizeof(Archetype::Column);
     return size;
 }
 

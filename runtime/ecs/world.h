@@ -56,11 +56,12 @@ class World {
     Entity create() { return create_raw({}); }
     template <class... Cs>
     requires(sizeof...(Cs) > 0) Entity create(const Cs&... values) {
-        Entity entity = create_raw(component_mask<Cs...>());
-        if (entity) (set(entity, values), ...);
+        EntityPlace place;
+        Entity entity = create_row(component_mask<Cs...>(), place);
+        if (entity) (set(place, values), ...);
         return entity;
     }
-    // Every component zero, as C{} is.
+    // Every component as C{} is.
     template <class... Cs>
     requires(sizeof...(Cs) > 0) Entity create() { return create(Cs{}...); }
     bool alive(Entity entity) const { return index_.find(entity).chunk != nullptr; }
@@ -193,10 +194,10 @@ class World {
             return values ? values + place.row : nullptr;
         }
     }
-    // Requires that the entity has it.
+    // Requires that the place's archetype has it.
     template <class C>
-    void set(Entity entity, const C& value) {
-        if constexpr (!std::is_empty_v<C>) *find<C>(entity) = value;
+    static void set(EntityPlace place, const C& value) {
+        if constexpr (!std::is_empty_v<C>) place.chunk->column<C>()[place.row] = value;
     }
     const Chunk* find_chunk(ChunkId id) const {
         if (id.slot >= slots_.size() || slots_[id.slot].generation != id.generation) return nullptr;
@@ -205,6 +206,8 @@ class World {
     void assert_editable() const {
         assert(iterations_ == 0 && "structural edit while a query iterates: record it in Commands instead");
     }
+    // Components not set. No entity when the indices are used up.
+    Entity create_row(const ComponentMask& mask, EntityPlace& place);
     Archetype& archetype_of(const ComponentMask& mask);
     Chunk* make_chunk(const Archetype& archetype, uint32_t row_count, bool shared);
     void drop_chunk(Chunk* chunk);
@@ -217,6 +220,7 @@ class World {
     EntityIndex index_;
     std::vector<std::unique_ptr<Archetype>> archetypes_;
     std::unordered_map<ComponentMask, Archetype*> archetype_by_mask_;
+    Archetype* last_archetype_ = nullptr;          // edits tend to come in runs
     std::vector<std::unique_ptr<Chunk[]>> heads_;  // k_heads_per_block each
     std::vector<Chunk*> free_heads_;
     std::vector<Slot> slots_;

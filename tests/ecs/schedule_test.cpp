@@ -139,6 +139,24 @@ TEST(Schedule, SameWorldOnAnyNumberOfThreads) {
     EXPECT_EQ(one, run_simulation(5));
 }
 
+TEST(Schedule, ABatchIsOneLoopOfTheHost) {
+    World world;
+    std::vector<size_t> counts;
+    Schedule schedule(world);
+    schedule.add(Phase::world, 1, "write_age", [](Query<Age>) {});
+    schedule.add(Phase::world, 2, "read_age", [](Query<const Age>) {});
+    schedule.add(Phase::world, 3, "write_velocity", [](Query<Velocity>) {});
+    set_job_runner(
+        [](void* context, size_t count, size_t, JobBody body, void* work) {
+            static_cast<std::vector<size_t>*>(context)->push_back(count);
+            body(work, 0, count);
+        },
+        &counts);
+    schedule.run(Phase::world);
+    set_job_runner(nullptr, nullptr);
+    EXPECT_EQ(counts, (std::vector<size_t>{2, 1}));
+}
+
 TEST(Schedule, UsesTheHostsThreads) {
     // A host that runs everything backwards, each range on a thread of its own.
     struct Host {

@@ -320,6 +320,12 @@ TEST(World, HashSeesStateNotHistory) {
     std::swap(*detour->get<Age>(entities[3]), *detour->get<Age>(entities[4]));
     EXPECT_NE(hash, detour->hash());
     std::swap(*detour->get<Age>(entities[3]), *detour->get<Age>(entities[4]));
+    World owned, other;
+    for (World* world : {&owned, &other}) {
+        Entity first = world->create(Age{1}), second = world->create(Age{1});
+        std::get<1>(world->create_chunk<Age>(1, world == &owned ? first : second))[0] = {3};
+    }
+    EXPECT_NE(owned.hash(), other.hash());
     detour->add(entities[2], Cached{1});
     uint64_t cached = detour->hash();
     detour->get<Cached>(entities[2])->value = 2;
@@ -331,6 +337,19 @@ TEST(World, MemoryOfTilesStaysNearThePayload) {
     uint64_t before = world.memory_bytes();
     for (int tile = 0; tile < 200; ++tile) world.create_chunk<Position, Velocity, Age>(1000);
     EXPECT_LT(double(world.memory_bytes() - before) / 200'000, 36.0);
+}
+
+TEST(World, TenMillionEntities) {
+    World world;
+    std::vector<ChunkId> tiles;
+    for (int i = 0; i < 10'000; ++i) tiles.push_back(std::get<0>(world.create_chunk<Frozen>(1000)));
+    EXPECT_EQ(world.entity_count(), 10'000'000u);
+    EXPECT_EQ(world.query<With<Frozen>>().count(), 10'000'000u);
+    Entity last = world.chunk(tiles.back()).entity(999);
+    EXPECT_TRUE(world.has<Frozen>(last));
+    for (ChunkId id : tiles) world.destroy_chunk(id);
+    EXPECT_EQ(world.entity_count(), 0u);
+    EXPECT_FALSE(world.alive(last));
 }
 
 TEST(World, StreamingTilesKeepsMemoryBounded) {

@@ -50,7 +50,7 @@ TEST(CookPlant, SplitsATreeIntoPointsAndLinesByThickness) {
     Plant plant = cook(small_tree());
     ASSERT_EQ(plant.parts.size(), 3u);
     EXPECT_STREQ(plant.parts[0].name, "bark");
-    EXPECT_STREQ(plant.parts[1].name, "bark/8");
+    EXPECT_STREQ(plant.parts[1].name, "bark/4");
     EXPECT_STREQ(plant.parts[2].name, "leaf");
     EXPECT_EQ(plant.parts[0].kind, PackedPartKind::lines);
     EXPECT_EQ(plant.parts[1].kind, PackedPartKind::lines);

@@ -26,6 +26,7 @@ PlantBlocks small_plant() {
     PackedPart part{};
     copy_name("leaf", part.name, sizeof part.name);
     part.importance = 1.5f;
+    part.coverage_gain.fill(1.0f);
     part.flags = 2;
     part.triangle_count = 2;
     part.point_count = 3;
@@ -136,6 +137,7 @@ TEST(LoadPlant, RefusesValuesNoPlantCanHave) {
     EXPECT_EQ(id_of(load_changed([](PlantBlocks& b) { b.line_vertices[0].x_plant = -INFINITY; })), k_wrong);
     EXPECT_EQ(id_of(load_changed([](PlantBlocks& b) { b.point_owners[2] = 2; })), k_wrong);
     EXPECT_EQ(id_of(load_changed([](PlantBlocks& b) { b.parts[0].importance = 0; })), k_wrong);
+    EXPECT_EQ(id_of(load_changed([](PlantBlocks& b) { b.parts[0].coverage_gain[3] = 0; })), k_wrong);
     EXPECT_EQ(id_of(load_changed([](PlantBlocks& b) { b.parts[0].area_m2 = NAN; })), k_wrong);
     EXPECT_EQ(id_of(load_changed([](PlantBlocks& b) { b.parts[0].kind = PackedPartKind(2); })), k_wrong);
     EXPECT_EQ(id_of(load_changed([](PlantBlocks& b) { b.parts[0].first_triangle = 1; })), k_wrong);

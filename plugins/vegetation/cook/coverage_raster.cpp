@@ -43,7 +43,8 @@ void CoverageRaster::line(vec2 a, vec2 b, float width) {
     for (int32_t along = pixel(a.x); along < last; ++along) {
         float across = a.y + slope * (float(along) + 0.5f - a.x);
         int32_t across_last = pixel(across + half);
-        for (int32_t i = pixel(across - half); i < across_last; ++i) steep ? cover(i, along) : cover(along, i);
+        for (int32_t i = pixel(across - half); i < across_last; ++i)
+            steep ? cover(i, along) : cover(along, i);
     }
 }
 

@@ -1,5 +1,5 @@
-// Counts the pixels that primitives cover together, by the same rules as the kernels in draw/: a pixel is covered when
-// its centre lies inside. One thread at a time.
+// Counts the pixels that primitives cover together, by the same rules as the kernels in draw/: a pixel is
+// covered when its centre lies inside. One thread at a time.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -26,7 +26,9 @@ class CoverageRaster {
         stamp = stamp_;
     }
     // First pixel whose centre is at or past x, within the picture.
-    int32_t pixel(float x) const { return int32_t(std::ceil(std::fmin(std::fmax(x, 0.0f), float(side_)) - 0.5f)); }
+    int32_t pixel(float x) const {
+        return int32_t(std::ceil(std::fmin(std::fmax(x, 0.0f), float(side_)) - 0.5f));
+    }
 
     int32_t side_;
     std::vector<uint32_t> stamps_;

@@ -10,10 +10,10 @@ namespace coppice {
 namespace {
 
 constexpr uint32_t k_side_limit = 2048;
-constexpr double k_wanted_pixels = 30000.0;     // over all views of a level: keeps its noise under 1 %
-constexpr double k_triangle_budget = 3.0e6;     // over all views of a level
+constexpr double k_wanted_pixels = 30000.0;  // over all views of a level: keeps its noise under 1 %
+constexpr double k_triangle_budget = 3.0e6;  // over all views of a level
 constexpr uint32_t k_least_views = 8, k_most_views = 256;
-constexpr float k_least_area_px2 = 6.0f;        // below, a level says what the next larger one says
+constexpr float k_least_area_px2 = 6.0f;  // below, a level says what the next larger one says
 constexpr int k_rounds = 6;
 
 struct View {
@@ -41,7 +41,8 @@ class PartCoverage {
     PartCoverage(const PackedPart& part, std::span<const PackedVertex> triangle_vertices,
                  std::span<const PackedVertex> points, std::span<const PackedVertex> line_vertices)
         : part_(part), triangle_vertices_(triangle_vertices), points_(points), line_vertices_(line_vertices) {
-        for (const PackedVertex& v : triangle_vertices) bounds_.include(vec3(v.x_plant, v.y_plant, v.z_plant));
+        for (const PackedVertex& v : triangle_vertices)
+            bounds_.include(vec3(v.x_plant, v.y_plant, v.z_plant));
         for (const PackedVertex& v : line_vertices) bounds_.include(vec3(v.x_plant, v.y_plant, v.z_plant));
     }
 
@@ -55,7 +56,8 @@ class PartCoverage {
                                              double(k_least_views), double(k_most_views)));
         CoverageRaster raster(side);
         uint64_t wanted = 0;
-        for (uint32_t i = 0; i < views; ++i) wanted += full(raster, view_of(i, views), pixels_per_meter, side);
+        for (uint32_t i = 0; i < views; ++i)
+            wanted += full(raster, view_of(i, views), pixels_per_meter, side);
         if (wanted == 0) return 0.0f;
         float gain = 1.0f;
         for (int round = 0; round < k_rounds; ++round) {
@@ -63,7 +65,8 @@ class PartCoverage {
             for (uint32_t i = 0; i < views; ++i)
                 drawn += reduced(raster, view_of(i, views), pixels_per_meter, side, gain);
             if (drawn == 0) return 0.0f;
-            // Coverage grows less than the area drawn; the steps are the full ratio and converge from one side.
+            // Coverage grows less than the area drawn; the steps are the full ratio and converge from one
+            // side.
             gain = std::clamp(gain * float(double(wanted) / double(drawn)), 0.25f, 4.0f);
         }
         return gain;
@@ -96,7 +99,8 @@ class PartCoverage {
                 raster.square(place(view, points_[i], pixels_per_meter, side), splat_side);
         } else {
             float length = part_.projected_length_m.evaluate(direction) * pixels_per_meter;
-            float q = std::min(part_.importance * area / std::max(length, 1.0e-6f), 1.0f), stored = float(line_vertices_.size() / 2);
+            float q = std::min(part_.importance * area / std::max(length, 1.0e-6f), 1.0f),
+                  stored = float(line_vertices_.size() / 2);
             size_t count = std::min(line_vertices_.size() / 2, size_t(q * stored + view.chance));
             float width = area / std::max(length * q, 1.0e-6f);
             for (size_t i = 0; i < count; ++i)
@@ -128,7 +132,8 @@ std::array<float, k_gain_levels> measure_coverage_gain(const PackedPart& part,
                                                        std::span<const PackedVertex> line_vertices) {
     std::array<float, k_gain_levels> gains;
     gains.fill(1.0f);
-    float area_m2 = mean_over_views(part.projected_area_m2), length_m = mean_over_views(part.projected_length_m);
+    float area_m2 = mean_over_views(part.projected_area_m2),
+          length_m = mean_over_views(part.projected_length_m);
     if (!(area_m2 > 0.0f) || (points.empty() && !(line_vertices.size() > 1 && length_m > 0.0f))) return gains;
     PartCoverage coverage(part, triangle_vertices, points, line_vertices);
     std::array<float, k_gain_levels> measured{};
@@ -136,14 +141,18 @@ std::array<float, k_gain_levels> measure_coverage_gain(const PackedPart& part,
         for (size_t level = first; level < last; ++level) {
             float fill = portable_exp2(float(level) - float(k_gain_levels - 1));
             // fill = area_px2 / n_p for points, area_px2 / length_px for lines (gain_at)
-            float pixels_per_meter = points.empty() ? fill * length_m / area_m2
-                                                    : std::sqrt(fill * float(points.size()) / area_m2);
-            measured[level] = coverage.measure(pixels_per_meter, area_m2 * pixels_per_meter * pixels_per_meter);
+            float pixels_per_meter =
+                points.empty() ? fill * length_m / area_m2 : std::sqrt(fill * float(points.size()) / area_m2);
+            measured[level] =
+                coverage.measure(pixels_per_meter, area_m2 * pixels_per_meter * pixels_per_meter);
         }
     });
-    // What could not be measured takes its neighbour's: small sizes from the next larger, large from the next smaller.
+    // What could not be measured takes its neighbour's: small sizes from the next larger, large from the next
+    // smaller.
     for (size_t level = k_gain_levels; level-- > 0;)
-        gains[level] = measured[level] > 0.0f ? measured[level] : level + 1 < k_gain_levels ? gains[level + 1] : 0.0f;
+        gains[level] = measured[level] > 0.0f      ? measured[level]
+                       : level + 1 < k_gain_levels ? gains[level + 1]
+                                                   : 0.0f;
     for (size_t level = 0; level < k_gain_levels; ++level)
         if (!(gains[level] > 0.0f)) gains[level] = level > 0 ? gains[level - 1] : 1.0f;
     return gains;

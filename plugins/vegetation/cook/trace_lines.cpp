@@ -7,83 +7,110 @@
 namespace coppice {
 namespace {
 
-constexpr float k_error_share = 0.995f;      // of the surface, that eps_l covers
-constexpr float k_bend_tolerance = 0.25f;    // of the radius
-constexpr float k_bent_share = 0.05f;        // of the length may be off by more
-constexpr float k_short_stem_share = 0.25f;  // of the length may be in stems shorter than a line
-constexpr float k_facing_share = 0.3f;       // |sum of a n| / sum of a, from where a surface faces one way
+constexpr float k_error_share = 0.995f;    // of the surface, that eps_l covers
+constexpr float k_bend_tolerance = 0.25f;  // of the radius
+constexpr float k_bent_share = 0.05f;      // of the length may be off by more
+constexpr float k_short_share = 0.25f;     // of the length may be in lines shorter than the others
+constexpr float k_facing_share = 0.3f;     // |sum of a n| / sum of a, from where a surface faces one way
 
 float length_of(const SkeletonSegment& s) {
     vec3 along = s.end_plant - s.begin_plant;
     return std::sqrt(glm::dot(along, along));
 }
 
-// Points at equal distances along a stem: piece_count + 1.
-std::vector<vec3> resample(const std::vector<SkeletonSegment>& segments, const StemRange& stem,
-                           uint32_t piece_count) {
-    std::vector<vec3> points{segments[stem.first].begin_plant};
+// A place on a stem where it is cut.
+struct Cut {
+    float along_m;  // from the stem's beginning
+    vec3 position_plant;
+};
+
+// The stem's ends and the bends that lines must not leave out (Douglas and Peucker).
+std::vector<Cut> find_bends(const std::vector<SkeletonSegment>& segments, const StemRange& stem) {
+    uint32_t joint_count = stem.last - stem.first + 1;
+    auto joint = [&](uint32_t i) {
+        return i == 0 ? segments[stem.first].begin_plant : segments[stem.first + i - 1].end_plant;
+    };
+    std::vector<bool> kept(joint_count, false);
+    kept.front() = kept.back() = true;
+    std::vector<std::pair<uint32_t, uint32_t>> open{{0, joint_count - 1}};
+    while (!open.empty()) {
+        auto [first, last] = open.back();
+        open.pop_back();
+        uint32_t worst = first;
+        float worst_excess = 0.0f;
+        for (uint32_t i = first + 1; i < last; ++i) {
+            float off = distance_to_segment(joint(i), joint(first), joint(last));
+            float excess = off - k_bend_tolerance * segments[stem.first + i - 1].end_radius_m;
+            if (excess > worst_excess) {
+                worst_excess = excess;
+                worst = i;
+            }
+        }
+        if (worst == first) continue;
+        kept[worst] = true;
+        open.push_back({first, worst});
+        open.push_back({worst, last});
+    }
+    std::vector<Cut> cuts;
+    float along = 0.0f;
+    for (uint32_t i = 0; i < joint_count; ++i) {
+        if (i > 0) along += length_of(segments[stem.first + i - 1]);
+        if (kept[i]) cuts.push_back({along, joint(i)});
+    }
+    return cuts;
+}
+
+uint32_t piece_count(float length_m, float line_m) {
+    return uint32_t(std::clamp(length_m / line_m + 0.5f, 1.0f, 1e6f));
+}
+
+// More cuts, evenly between the bends, so that lines are about line_m long.
+std::vector<Cut> add_cuts(const std::vector<SkeletonSegment>& segments, const StemRange& stem,
+                          const std::vector<Cut>& bends, float line_m) {
+    std::vector<Cut> cuts{bends.front()};
     float before = 0.0f;
     uint32_t at = stem.first;
-    for (uint32_t i = 1; i < piece_count; ++i) {
-        float target = stem.length_m * float(i) / float(piece_count);
-        while (at + 1 < stem.last && before + length_of(segments[at]) < target)
-            before += length_of(segments[at++]);
-        float share = std::clamp((target - before) / length_of(segments[at]), 0.0f, 1.0f);
-        points.push_back(segments[at].begin_plant +
-                         (segments[at].end_plant - segments[at].begin_plant) * share);
+    for (size_t b = 1; b < bends.size(); ++b) {
+        float from = bends[b - 1].along_m, length = bends[b].along_m - from;
+        uint32_t count = piece_count(length, line_m);
+        for (uint32_t i = 1; i < count; ++i) {
+            float along = from + length * float(i) / float(count);
+            while (at + 1 < stem.last && before + length_of(segments[at]) < along)
+                before += length_of(segments[at++]);
+            float share = std::clamp((along - before) / length_of(segments[at]), 0.0f, 1.0f);
+            cuts.push_back({along, segments[at].begin_plant +
+                                       (segments[at].end_plant - segments[at].begin_plant) * share});
+        }
+        cuts.push_back(bends[b]);
     }
-    points.push_back(segments[stem.last - 1].end_plant);
-    return points;
+    return cuts;
 }
 
-// Length of the stem's segments whose end lies further from the pieces than the tolerance.
-double bent_length(const std::vector<SkeletonSegment>& segments, const StemRange& stem,
-                   const std::vector<vec3>& points) {
-    double bent = 0.0;
-    float before = 0.0f;
-    for (uint32_t s = stem.first; s < stem.last; ++s) {
-        before += length_of(segments[s]);
-        size_t piece = std::min(size_t(before / stem.length_m * float(points.size() - 1)), points.size() - 2);
-        float off = distance_to_segment(segments[s].end_plant, points[piece], points[piece + 1]);
-        if (off > k_bend_tolerance * segments[s].end_radius_m) bent += double(length_of(segments[s]));
-    }
-    return bent;
-}
-
-std::vector<uint32_t> choose_piece_counts(const std::vector<SkeletonSegment>& segments,
-                                          const std::vector<StemRange>& stems, size_t line_limit) {
+// The length of line that a quarter of the whole length does not reach between its bends, or longer to stay
+// within the limit on their number.
+float choose_line_length(const std::vector<std::vector<Cut>>& bends, size_t line_limit) {
     std::vector<float> lengths;
     double total = 0.0;
-    for (const StemRange& stem : stems) {
-        lengths.push_back(stem.length_m);
-        total += double(stem.length_m);
-    }
+    for (const std::vector<Cut>& stem : bends)
+        for (size_t b = 1; b < stem.size(); ++b) {
+            lengths.push_back(stem[b].along_m - stem[b - 1].along_m);
+            total += double(lengths.back());
+        }
     std::sort(lengths.begin(), lengths.end());
     float line_m = lengths.back();
     double shorter = 0.0;
     for (float length : lengths) {
         shorter += double(length);
-        if (shorter >= double(k_short_stem_share) * total) {
+        if (shorter >= double(k_short_share) * total) {
             line_m = length;
             break;
         }
     }
-    std::vector<uint32_t> counts(stems.size(), 1);
-    for (int attempt = 0; attempt < 24; ++attempt, line_m *= 0.7f) {
-        std::vector<uint32_t> wanted;
+    for (;; line_m *= 1.25f) {
         size_t line_count = 0;
-        for (const StemRange& stem : stems) {
-            wanted.push_back(uint32_t(std::clamp(stem.length_m / line_m + 0.5f, 1.0f, 1e6f)));
-            line_count += wanted.back();
-        }
-        if (line_count > line_limit) break;
-        counts = std::move(wanted);
-        double bent = 0.0;
-        for (size_t i = 0; i < stems.size(); ++i)
-            bent += bent_length(segments, stems[i], resample(segments, stems[i], counts[i]));
-        if (bent <= double(k_bent_share) * total) break;
+        for (float length : lengths) line_count += piece_count(length, line_m);
+        if (line_count <= std::max(line_limit, lengths.size())) return line_m;
     }
-    return counts;
 }
 
 // What the triangles around a segment look like.
@@ -112,8 +139,9 @@ TracedLines trace_lines(const PartDescription& part, const TracedSkeleton& skele
     std::vector<StemRange> stems = find_stems(segments);
     TracedLines traced;
     if (stems.empty()) return traced;
-    std::vector<uint32_t> counts =
-        choose_piece_counts(segments, stems, std::max(stems.size(), areas.size() / 2));
+    std::vector<std::vector<Cut>> bends;
+    for (const StemRange& stem : stems) bends.push_back(find_bends(segments, stem));
+    float line_m = choose_line_length(bends, areas.size() * 2 / 3);
 
     std::vector<Surroundings> around(segments.size());
     for (size_t t = 0; t < areas.size(); ++t) {
@@ -128,12 +156,11 @@ TracedLines trace_lines(const PartDescription& part, const TracedSkeleton& skele
     std::vector<uint32_t> first_line{0}, stem_of_segment(segments.size());
     for (size_t i = 0; i < stems.size(); ++i) {
         const StemRange& stem = stems[i];
-        std::vector<vec3> points = resample(segments, stem, counts[i]);
+        std::vector<Cut> cuts = add_cuts(segments, stem, bends[i], line_m);
         uint32_t at = stem.first;
         float before = 0.0f;
-        for (uint32_t piece = 0; piece < counts[i]; ++piece) {
+        for (size_t piece = 0; piece + 1 < cuts.size(); ++piece) {
             // All segments the piece touches.
-            float end = stem.length_m * float(piece + 1) / float(counts[i]);
             Surroundings sum;
             dvec3 skeleton_color(0);
             double skeleton_length = 0.0;
@@ -143,10 +170,10 @@ TracedLines trace_lines(const PartDescription& part, const TracedSkeleton& skele
                 sum.normal += around[at].normal;
                 skeleton_color += dvec3(segments[at].color_linear) * double(length_of(segments[at]));
                 skeleton_length += double(length_of(segments[at]));
-                if (at + 1 >= stem.last || before + length_of(segments[at]) > end) break;
+                if (at + 1 >= stem.last || before + length_of(segments[at]) > cuts[piece + 1].along_m) break;
                 before += length_of(segments[at++]);
             }
-            TracedLine line{points[piece], points[piece + 1], vec3(0), vec3(0)};
+            TracedLine line{cuts[piece].position_plant, cuts[piece + 1].position_plant, vec3(0), vec3(0)};
             if (line.begin_plant == line.end_plant) continue;
             line.color_linear = vec3(sum.area > 0.0 ? sum.color * (1.0 / sum.area)
                                                     : skeleton_color * (1.0 / skeleton_length));

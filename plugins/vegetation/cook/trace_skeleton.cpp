@@ -104,6 +104,7 @@ class LevelSetTracer {
         collect_edges();
         measure_distances();
         if (!(longest_ > 0.0f)) return trace_straight(c_);
+        choose_cuts();
         cut();
         link();
         ComponentTrace trace = assemble();
@@ -206,16 +207,41 @@ class LevelSetTracer {
         }
         distance_ = sources.size() > 1 ? distances_from(sources) : std::move(from_end);
         longest_ = distance_[farthest(distance_)];
+        width_ = float(c_.total_area) /
+                 (k_pi * std::max(longest_, 1e-12f));  // diameter of a tube of this area and length
     }
 
-    // Cut j (1 .. bands - 1) lies at distance j * step; band b holds the surface between cuts b and b + 1.
+    // Cuts run through the rings of corners where there are rings, so that each triangle of a tube lies
+    // between two cuts; where corners lie at all distances, they follow each other at the tube's own width.
+    void choose_cuts() {
+        slack_ = 0.5f * width_;
+        std::vector<float> sorted = distance_;
+        std::sort(sorted.begin(), sorted.end());
+        for (size_t first = 0, last; first < sorted.size(); first = last) {
+            double sum = 0.0;
+            for (last = first;
+                 last < sorted.size() && (last == first || sorted[last] - sorted[last - 1] < slack_); ++last)
+                sum += double(sorted[last]);
+            float extent = sorted[last - 1] - sorted[first];
+            if (extent > 1.5f * width_) {
+                int count = std::clamp(int(extent / width_ + 0.5f), 1, k_cut_limit);
+                for (int i = 0; i < count; ++i)
+                    cuts_.push_back(sorted[first] + extent * ((float(i) + 0.5f) / float(count)));
+            } else if (first > 0 && last < sorted.size()) {
+                cuts_.push_back(float(sum / double(last - first)));
+            }
+        }
+        if (cuts_.size() > size_t(k_cut_limit)) {
+            cuts_.clear();
+            for (int i = 1; i <= k_cut_limit; ++i)
+                cuts_.push_back(longest_ * float(i) / float(k_cut_limit + 1));
+        }
+    }
+
+    // Band b holds the surface between cuts b and b + 1; cuts count from 1.
     void cut() {
-        float width = float(c_.total_area) / (k_pi * longest_);  // diameter of a tube of this area and length
-        int most = std::clamp(int(c_.position.size() / 2), 2, k_cut_limit);
-        int bands = std::clamp(int(std::min(longest_ / std::max(width, 1e-12f), 1e6f) + 0.5f), 2, most);
-        step_ = longest_ / float(bands);
         band_.resize(distance_.size());
-        for (size_t v = 0; v < band_.size(); ++v) band_[v] = std::min(int(distance_[v] / step_), bands - 1);
+        for (size_t v = 0; v < band_.size(); ++v) band_[v] = band_at(distance_[v]);
 
         size_t triangle_count = c_.area.size();
         first_piece_.assign(triangle_count + 1, 0);
@@ -240,6 +266,9 @@ class LevelSetTracer {
             }
         }
     }
+    int band_at(float distance) const {
+        return int(std::upper_bound(cuts_.begin(), cuts_.end(), distance) - cuts_.begin());
+    }
     uint32_t piece_of(uint32_t triangle, int band) const {
         return first_piece_[triangle] + uint32_t(band - lowest_[triangle]);
     }
@@ -253,7 +282,7 @@ class LevelSetTracer {
             if (std::min(band_[a], band_[b]) >= j || std::max(band_[a], band_[b]) < j) continue;
             if (a > b) std::swap(a, b);  // both triangles of an edge get the same bits
             float rise = distance_[b] - distance_[a];
-            float share = std::fabs(rise) > 0.0f ? (float(j) * step_ - distance_[a]) / rise : 0.5f;
+            float share = std::fabs(rise) > 0.0f ? (cuts_[size_t(j) - 1] - distance_[a]) / rise : 0.5f;
             end[found++] = c_.position[a] + (c_.position[b] - c_.position[a]) * std::clamp(share, 0.0f, 1.0f);
         }
         if (found == 1) end[1] = end[0];
@@ -318,11 +347,11 @@ class LevelSetTracer {
         std::vector<dvec3> top(slot_count, dvec3(0)), bottom(slot_count, dvec3(0));
         std::vector<uint32_t> top_count(slot_count, 0), bottom_count(slot_count, 0);
         for_each_corner([&](uint32_t piece, uint32_t v) {
-            if (distance_[v] >= reach[piece] - 0.25f * step_) {
+            if (distance_[v] >= reach[piece] - slack_) {
                 top[piece] += dvec3(c_.position[v]);
                 ++top_count[piece];
             }
-            if (distance_[v] <= depth[piece] + 0.25f * step_) {
+            if (distance_[v] <= depth[piece] + slack_) {
                 bottom[piece] += dvec3(c_.position[v]);
                 ++bottom_count[piece];
             }
@@ -420,7 +449,7 @@ class LevelSetTracer {
             float mean_distance = (distance_[c_.corner[3 * t]] + distance_[c_.corner[3 * t + 1]] +
                                    distance_[c_.corner[3 * t + 2]]) *
                                   (1.0f / 3.0f);
-            int band = std::clamp(int(mean_distance / step_), lowest_[t], lowest_[t] + bands_of(t) - 1);
+            int band = std::clamp(band_at(mean_distance), lowest_[t], lowest_[t] + bands_of(t) - 1);
             uint32_t piece = find_root(piece_parent_, piece_of(t, band));
             uint32_t best = bump_link[piece];
             float best_distance = INFINITY;
@@ -443,7 +472,8 @@ class LevelSetTracer {
     std::vector<uint32_t> first_neighbor_, neighbors_;
     std::vector<bool> on_border_;  // of each neighbour: the edge to it belongs to one triangle only
     std::vector<float> distance_;  // over the surface from one end, of each corner
-    float longest_ = 0.0f, step_ = 0.0f;
+    float longest_ = 0.0f, width_ = 0.0f, slack_ = 0.0f;
+    std::vector<float> cuts_;            // distances, rising
     std::vector<int> band_;              // of each corner
     std::vector<int> lowest_;            // band of each triangle's lowest corner
     std::vector<uint32_t> first_piece_;  // slot of each triangle's piece in its lowest band
@@ -604,16 +634,18 @@ TracedSkeleton adopt_skeleton(const PartDescription& part) {
                 middle += part.vertices[part.indices[3 * t + k]].position_plant * (1.0f / 3.0f);
             float best_off = INFINITY;
             uint32_t best = 0;
+            // All three corners must fit: where twigs cross, one place alone lies on several surfaces.
             auto consider = [&](uint32_t i) {
                 const SkeletonSegment& s = segments[i];
                 vec3 along = s.end_plant - s.begin_plant;
-                float square = glm::dot(along, along);
-                float share = square > 0.0f
-                                  ? std::clamp(glm::dot(middle - s.begin_plant, along) / square, 0.0f, 1.0f)
-                                  : 0.0f;
-                vec3 away = middle - (s.begin_plant + along * share);
-                float radius = s.begin_radius_m + (s.end_radius_m - s.begin_radius_m) * share;
-                float off = std::fabs(std::sqrt(glm::dot(away, away)) - radius);
+                float square = glm::dot(along, along), off = 0.0f;
+                for (size_t k = 0; k < 3; ++k) {
+                    vec3 p = part.vertices[part.indices[3 * t + k]].position_plant - s.begin_plant;
+                    float share = square > 0.0f ? std::clamp(glm::dot(p, along) / square, 0.0f, 1.0f) : 0.0f;
+                    vec3 away = p - along * share;
+                    float radius = s.begin_radius_m + (s.end_radius_m - s.begin_radius_m) * share;
+                    off = std::max(off, std::fabs(std::sqrt(glm::dot(away, away)) - radius));
+                }
                 if (off < best_off) {
                     best_off = off;
                     best = i;

@@ -7,7 +7,9 @@
 
 namespace coppice {
 
-// For each vertex the first vertex at its position. -0 and 0 are one position. Requires finite positions.
+// For each vertex the first vertex within two millionths of the mesh's extent that stands for itself: a seam
+// whose two sides were computed with different roundings (cos 0 and cos 2 pi) is closed. Requires finite
+// positions.
 std::vector<uint32_t> weld_positions(const std::vector<DescriptionVertex>& vertices);
 
 }  // namespace coppice

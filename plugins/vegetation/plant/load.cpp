@@ -55,6 +55,8 @@ const char* fault_of_part(const PackedPart& part, const Plant& plant) {
     if (!all_finite(part.bounds_min) || !all_finite(part.bounds_max) ||
         !all_finite(part.projected_area_m2.m) || !all_finite(part.projected_length_m.m))
         return "a value that is not finite";
+    for (float gain : part.coverage_gain)
+        if (!(gain > 0.0f) || !std::isfinite(gain)) return "a coverage gain that is not positive";
     for (uint32_t owner : plant.point_owners.subspan(part.first_point, part.point_count))
         if (owner >= part.triangle_count) return "a point of a triangle that does not exist";
     return nullptr;

@@ -32,8 +32,9 @@ struct DirectionForm {
 
 enum class PackedPartKind : uint32_t { points = 0, lines = 1 };
 
-// Coverage gains at log2(fill) = -(k_gain_levels - 1) ... 0, where fill is the projected area in square pixels over the
-// number of points, or over the projected length of the lines in pixels: how finely the part is resolved.
+// Coverage gains at log2(fill) = -(k_gain_levels - 1) ... 0, where fill is the projected area in square
+// pixels over the number of points, or over the projected length of the lines in pixels: how finely the part
+// is resolved.
 inline constexpr uint32_t k_gain_levels = 10;
 
 // One part, or one octree cell's share of a part. 256 bytes.

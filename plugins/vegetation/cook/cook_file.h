@@ -1,0 +1,35 @@
+// From an author's file to a packed plant: glTF (.glb, .gltf) by the importer, a species (.json) by the
+// modeller plugin; and the cache of plants cooked before.
+#pragma once
+#include <cstdint>
+#include <string>
+#include "plugins/images/images.h"
+#include "plugins/modeller/modeller.h"
+#include "plugins/vegetation/cook/cook_plant.h"
+
+namespace coppice {
+
+// The plant as described. variation: which individual of a species; glTF has one. modeller may be null where
+// no species is read, images where no textures are. Errors: of the file, or name_unknown for a plugin that is
+// needed and missing, format_unknown for another ending.
+Result<PlantDescription> read_plant(const std::string& source_path, uint64_t variation,
+                                    const ModellerInterface* modeller, const ImagesInterface* images);
+
+// read_plant, cook_plant, and the packed plant written whole or not at all.
+Status cook_file(const std::string& source_path, const std::string& out_path, uint64_t variation,
+                 const CookSettings& settings, const ModellerInterface* modeller,
+                 const ImagesInterface* images);
+
+// Where the cache keeps the packed plant: its name follows from the bytes of the source and of the files it
+// refers to, the variation, the settings and the versions of cook and modeller, so that what is found there
+// is up to date. Nothing is cooked. Errors: file_*.
+Result<std::string> cooked_path(const std::string& cache_dir, const std::string& source_path,
+                                uint64_t variation, const CookSettings& settings);
+
+// cooked_path, after cooking what is missing there or cannot be loaded. Programs may race: each writes a
+// whole file.
+Result<std::string> find_or_cook(const std::string& cache_dir, const std::string& source_path,
+                                 uint64_t variation, const CookSettings& settings,
+                                 const ModellerInterface* modeller, const ImagesInterface* images);
+
+}  // namespace coppice

@@ -119,7 +119,8 @@ Result<PlantDescription> grow_tree(const TreeParameters& parameters, const std::
             return fail(ErrorId::limit_exceeded, file, "leaves.count",
                         fmt::format("more than {:.0f} triangles of leaves", k_triangle_limit), "lower the counts");
         }
-        uint32_t count = due > placed ? uint32_t(due - placed + 0.5) : 0;
+        // Rounded down: what is left over goes to the next twig, and the whole is never passed.
+        uint32_t count = due > placed ? uint32_t(due - placed + 1e-6) : 0;
         placed += double(count);
         place_on_stem(part, placer, leaves, tree, stem, uint32_t(i), count, crown);
     }

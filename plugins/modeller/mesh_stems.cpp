@@ -115,37 +115,76 @@ class StemMesher {
             color *= 1.0f - bark.streaks * (1.0f - twiggy) * furrow;
             if (bark.patches > 0.0f && twiggy < 0.8f) {
                 // Patches lie across it: slow around it, fine along it.
-                float patch = noise(around * 4.0f, along_m * 5.5f, 4, own.fork(2));
-                float more = stem.level == 0 ? std::max(0.0f, 1.0f - 4.0f * height) * 0.25f : 0.0f;
-                float threshold = 1.0f - bark.patches - more;
-                float inside = std::clamp((patch - threshold) * 6.0f, 0.0f, 1.0f);
+                float patch = noise(around * 5.0f, along_m * 4.5f, 5, own.fork(2));
+                float low = stem.level == 0 ? std::max(0.0f, 1.0f - 5.0f * height) * 0.2f : 0.0f;
+                // Smooth noise is seldom near 0 or 1: its middle half holds most of it.
+                float threshold = 0.85f - 0.7f * std::min(bark.patches + low, 1.0f);
+                float inside = std::clamp((patch - threshold) * 7.0f + 0.5f, 0.0f, 1.0f);
                 color = glm::mix(color, bark.patch_color_linear, inside);
             }
         }
         return color * own.fork(3).next_around(1.0f, 0.08f);
     }
 
+    struct SurfacePoint {
+        vec3 position, normal;  // normal: of an untapered stem
+    };
+    SurfacePoint point_on(const Ring& ring, float around, uint32_t level) const {
+        float angle = 2.0f * k_pi * around;
+        vec3 out = ring.frame.side * portable_cos(angle) + ring.frame.upper * portable_sin(angle);
+        if (level > 0 || p_.lobes == 0) return {ring.center + out * ring.radius_m, out};
+        // Lobes fade upwards.
+        float fade = std::max(1.0f - 2.0f * ring.fraction, 0.0f) * p_.lobe_depth;
+        float lobe = float(p_.lobes) * angle;
+        vec3 tangent = ring.frame.upper * portable_cos(angle) - ring.frame.side * portable_sin(angle);
+        return {ring.center + out * (ring.radius_m * (1.0f + fade * portable_sin(lobe))),
+                normalize_or(out - tangent * (fade * float(p_.lobes) * portable_cos(lobe)), out)};
+    }
+
     uint32_t add_ring(PartBuilder& part, const Ring& ring, float slope, const Stem& stem, uint32_t index, uint32_t sides) const {
         uint32_t first = 0;
         for (uint32_t s = 0; s < sides; ++s) {
             float around = float(s) / float(sides);
-            float angle = 2.0f * k_pi * around;
-            vec3 out = ring.frame.side * portable_cos(angle) + ring.frame.upper * portable_sin(angle);
-            float radius = ring.radius_m;
-            vec3 normal = out;
-            if (stem.level == 0 && p_.lobes > 0) {
-                // Lobes fade upwards with the flare's foot.
-                float fade = std::max(1.0f - 2.0f * ring.fraction, 0.0f) * p_.lobe_depth;
-                float lobe = float(p_.lobes) * angle;
-                radius *= 1.0f + fade * portable_sin(lobe);
-                vec3 tangent = ring.frame.upper * portable_cos(angle) - ring.frame.side * portable_sin(angle);
-                normal = normalize_or(out - tangent * (fade * float(p_.lobes) * portable_cos(lobe)), out);
-            }
-            uint32_t v = part.add_vertex(ring.center + out * radius, normalize_or(normal - ring.frame.along * slope, out),
+            SurfacePoint point = point_on(ring, around, stem.level);
+            uint32_t v = part.add_vertex(point.position, normalize_or(point.normal - ring.frame.along * slope, point.normal),
                                          color_at(ring, around, stem, index));
             if (s == 0) first = v;
         }
         return first;
+    }
+
+    // Dark scars across the trunk, finer than its mesh can colour: small diamonds just above one of its faces, tall
+    // rough ones at the foot.
+    void add_marks(uint32_t index, uint32_t sides) {
+        Random random = bark_random_.fork(index).fork(4);
+        for (uint32_t m = 0; m < p_.bark.marks; ++m) {
+            // Denser towards the foot.
+            float at = random.next_unit() * random.next_in(0.3f, 1.0f) * float(rings_.size() - 2);
+            uint32_t side = random.next_below(sides);
+            float middle = random.next_in(0.4f, 0.6f), half_width = random.next_in(0.2f, 0.48f) * 0.8f;
+            float half_height_m = random.next_in(0.006f, 0.016f), lightness = random.next_in(0.0f, 0.12f);
+            size_t i = std::min(size_t(at), rings_.size() - 3);
+            const Ring &below = rings_[i], &above = rings_[i + 1];
+            if (part_of(above.radius_m) != 0) continue;
+            SurfacePoint a = point_on(below, float(side) / float(sides), 0), b = point_on(below, float(side + 1) / float(sides), 0);
+            SurfacePoint c = point_on(above, float(side) / float(sides), 0), d = point_on(above, float(side + 1) / float(sides), 0);
+            float foot = std::clamp(1.0f - below.center.y / (0.12f * tree_.height_m), 0.0f, 1.0f);
+            half_height_m *= 1.0f + 7.0f * foot * random.next_unit();
+            float height_m = std::max(glm::length(c.position - a.position), 1e-3f);
+            float half_height = std::min(half_height_m / height_m, 0.45f);
+            float up = std::clamp(at - float(i), half_height, 1.0f - half_height);
+            vec3 face = normalize_or(glm::cross(b.position - a.position, c.position - a.position), a.normal);
+            vec3 color = glm::mix(p_.bark.patch_color_linear, p_.bark.color_linear, lightness);
+            auto place = [&](float across, float along) {
+                vec3 position = glm::mix(glm::mix(a.position, b.position, across), glm::mix(c.position, d.position, across), along);
+                vec3 normal = glm::mix(glm::mix(a.normal, b.normal, across), glm::mix(c.normal, d.normal, across), along);
+                return parts_[0].add_vertex(position + face * (0.012f * below.radius_m), normalize_or(normal, face), color);
+            };
+            uint32_t left = place(middle - half_width, up), low = place(middle, up - half_height);
+            uint32_t right = place(middle + half_width, up), high = place(middle, up + half_height);
+            parts_[0].add_triangle(left, low, right);
+            parts_[0].add_triangle(left, right, high);
+        }
     }
 
     void mesh_stem(const Stem& stem, uint32_t index) {
@@ -160,8 +199,7 @@ class StemMesher {
         uint32_t current_part = part_of(0.5f * (rings_[0].radius_m + rings_[1].radius_m));
         uint32_t previous = add_ring(parts_[current_part], rings_[0], slope_at(0), stem, index, sides);
         if (stem.level == 0 && stem.first_fraction == 0.0f) {
-            for (uint32_t s = 0; s + 2 < sides; ++s)
-                parts_[current_part].add_triangle(previous, previous + s + 2, previous + s + 1);
+            add_cap(parts_[current_part], previous, sides, -rings_[0].frame.along);
         }
         for (size_t i = 0; i < last; ++i) {
             const Ring &ring = rings_[i], &next = rings_[i + 1];
@@ -187,6 +225,7 @@ class StemMesher {
             }
             previous = current;
         }
+        if (stem.level == 0 && stem.first_fraction == 0.0f && p_.bark.marks > 0 && rings_.size() > 3) add_marks(index, sides);
     }
 
     const TreeParameters& p_;

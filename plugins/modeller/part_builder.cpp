@@ -67,6 +67,13 @@ PartDescription PartBuilder::take() {
     return part;
 }
 
+void add_cap(PartBuilder& part, uint32_t ring, uint32_t sides, vec3 normal) {
+    uint32_t first = part.add_vertex(part.vertex(ring).position_plant, normal, part.vertex(ring).color_linear);
+    for (uint32_t s = 1; s < sides; ++s)
+        part.add_vertex(part.vertex(ring + s).position_plant, normal, part.vertex(ring + s).color_linear);
+    for (uint32_t s = 0; s + 2 < sides; ++s) part.add_triangle(first, first + s + 2, first + s + 1);
+}
+
 void add_tube(PartBuilder& part, std::span<const TubeRing> rings, uint32_t sides, bool cap, uint32_t stem,
               uint32_t level) {
     if (rings.size() < 2) return;
@@ -89,13 +96,12 @@ void add_tube(PartBuilder& part, std::span<const TubeRing> rings, uint32_t sides
         float length = std::max(glm::length(next.center - ring.center), 1e-6f);
         float slope = std::clamp((next.radius_m - ring.radius_m) / length, -4.0f, 4.0f);
         uint32_t current = add_ring(i, ring.frame.along, slope);
+        if (i == 0 && cap) add_cap(part, current, sides, -ring.frame.along);
         for (uint32_t s = 0; s < sides; ++s) {
             uint32_t t = (s + 1) % sides;
             if (i > 0) {
                 part.add_triangle(previous + s, previous + t, current + t);
                 part.add_triangle(previous + s, current + t, current + s);
-            } else if (cap && s + 2 < sides) {
-                part.add_triangle(current, current + s + 2, current + s + 1);
             }
         }
         part.add_segment(ring.center, next.center, ring.radius_m, next.radius_m, stem, level,
@@ -207,8 +213,8 @@ void LeafPlacer::place_needles(PartBuilder& part, vec3 foot, const Frame& frame,
         float half_width_m = 0.5f * leaves_.width_m * size;
         vec3 end = foot + needle.along * length_m;
         vec3 varied = vary_color(color, {0.08f, 0.04f}, random);
-        uint32_t a = part.add_vertex(foot - needle.side * half_width_m, needle.upper, varied);
-        uint32_t b = part.add_vertex(foot + needle.side * half_width_m, needle.upper, varied);
+        uint32_t a = part.add_vertex(foot + needle.side * half_width_m, needle.upper, varied);
+        uint32_t b = part.add_vertex(foot - needle.side * half_width_m, needle.upper, varied);
         uint32_t c = part.add_vertex(end, needle.upper, tip_color);
         part.add_triangle(a, b, c);
         part.add_segment(foot, end, half_width_m, 0.0f, stem, 0, glm::mix(varied, tip_color, 0.4f));

@@ -35,6 +35,7 @@ class PartBuilder {
     void add_segment(vec3 begin, vec3 end, float begin_radius_m, float end_radius_m, uint32_t stem, uint32_t level,
                      vec3 color);
 
+    const DescriptionVertex& vertex(uint32_t index) const { return part_.vertices[index]; }
     uint32_t triangle_count() const { return uint32_t(part_.indices.size() / 3); }
     bool empty() const { return part_.indices.empty(); }
     // Closes the last element. The builder is empty afterwards.
@@ -51,6 +52,9 @@ struct TubeRing {
     float radius_m;
     vec3 color;
 };
+
+// Closes the ring of vertices [ring, ring + sides) from below, with vertices of its own.
+void add_cap(PartBuilder& part, uint32_t ring, uint32_t sides, vec3 normal);
 
 // A closed tube of one colour a ring, with a pointed end; begins with a cap if asked for. Adds its skeleton.
 void add_tube(PartBuilder& part, std::span<const TubeRing> rings, uint32_t sides, bool cap, uint32_t stem,

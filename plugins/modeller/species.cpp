@@ -55,6 +55,7 @@ void read_bark(JsonReader in, BarkParameters& bark) {
     in.number("foot_fraction", bark.foot_fraction, 0.0f, 1.0f);
     in.number("streaks", bark.streaks, 0.0f, 1.0f);
     in.number("patches", bark.patches, 0.0f, 1.0f);
+    in.count("marks", bark.marks, 0, 100000);
     in.finish();
 }
 
@@ -257,6 +258,7 @@ double tree_bound(const TreeParameters& tree) {
         triangles += stems * (2.0 * level.sides * (double(level.segments) * level.rings + 1.0));
         if (i + tree.leaf_levels >= tree.levels.size()) leafy_stems += stems;
     }
+    triangles += 2.0 * tree.bark.marks * (tree.levels.empty() ? 1 : tree.levels[0].count);
     double leaves = leaf_triangles(tree.leaves, leafy_stems * tree.leaves.count);
     // With a target the leaves fill what the stems leave.
     return tree.triangles ? std::max(triangles, double(tree.triangles)) : triangles + leaves;

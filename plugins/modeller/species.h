@@ -56,7 +56,8 @@ struct BarkParameters {
     vec3 patch_color_linear{0.03f, 0.028f, 0.025f};
     float foot_fraction = 0.15f;  // of the height, where the foot's colour has faded
     float streaks = 0.35f;        // how much darker vertical furrows are
-    float patches = 0.0f;         // share of the trunk under horizontal dark patches
+    float patches = 0.0f;         // share of the trunk under large dark patches
+    uint32_t marks = 0;           // scars across the trunk, in the patches' colour
 };
 
 // W&P's parameters of one level of stems, in their order.

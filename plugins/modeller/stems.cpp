@@ -22,6 +22,7 @@ struct Growing {
     Frame frame;
     vec3 position;
     uint32_t first_segment = 0;
+    Frame first_frame;  // of a clone's first node
     float radius_scale = 1.0f;
     vec3 correction_axis{0};  // a split's turn is taken back over the rest of the stem
     float correction_rad = 0.0f;
@@ -170,39 +171,33 @@ class StemGrower {
         growing.stem.first_node = uint32_t(tree_.nodes.size());
         growing.stem.first_fraction = float(growing.first_segment) / float(segments);
         std::vector<Growing> clones;
-        auto add_node = [&](uint32_t segment) {
+        auto add_node = [&](uint32_t segment, const Frame& frame) {
             float fraction = float(segment) / float(segments);
-            tree_.nodes.push_back({growing.position, growing.frame, fraction, radius_at(growing, fraction)});
+            tree_.nodes.push_back({growing.position, frame, fraction, radius_at(growing, fraction)});
         };
-        add_node(growing.first_segment);
+        add_node(growing.first_segment, growing.first_segment > 0 ? growing.first_frame : growing.frame);
         float helix = curve.next_in(0.0f, 2.0f * k_pi);
         for (uint32_t i = growing.first_segment; i < segments; ++i) {
             turn_segment(growing, level, i, curve, helix);
             growing.position += growing.frame.along * segment_m;
-            // The split shows from its node on: the node itself still has the whole radius.
-            float scale_before = growing.radius_scale;
+            // Both ways of a split leave its node in the old direction and with what it had of thickness, and turn
+            // from there, so that the fork is smooth.
+            add_node(i + 1, growing.frame);
             uint32_t splits = i + 1 < segments ? splits_at(growing.stem.level, i) : 0;
-            if (splits > 0) {
-                Growing before = growing;
-                before.radius_scale *= portable_pow(float(splits + 1), -k_split_radius_power);
-                before.first_segment = i + 1;
-                float around = curve.next_in(0.0f, 2.0f * k_pi);
-                for (uint32_t k = 0; k <= splits; ++k) {
-                    Growing after = split_off(before, level, around + 2.0f * k_pi * float(k) / float(splits + 1), curve);
-                    if (k == 0) {
-                        growing.frame = after.frame;
-                        growing.correction_axis = after.correction_axis;
-                        growing.correction_rad = after.correction_rad;
-                        growing.radius_scale = scale_before;
-                    } else {
-                        after.stem.random = growing.stem.random.fork(k_stream_clones).fork(i * 32u + k);
-                        clones.push_back(after);
-                    }
+            if (splits == 0) continue;
+            Growing before = growing;
+            before.first_segment = i + 1;
+            before.first_frame = growing.frame;
+            before.radius_scale *= portable_pow(float(splits + 1), -k_split_radius_power);
+            float around = curve.next_in(0.0f, 2.0f * k_pi);
+            for (uint32_t k = 0; k <= splits; ++k) {
+                Growing after = split_off(before, level, around + 2.0f * k_pi * float(k) / float(splits + 1), curve);
+                if (k == 0) {
+                    growing = after;
+                } else {
+                    after.stem.random = growing.stem.random.fork(k_stream_clones).fork(i * 32u + k);
+                    clones.push_back(after);
                 }
-                add_node(i + 1);
-                growing.radius_scale = before.radius_scale;
-            } else {
-                add_node(i + 1);
             }
         }
         growing.stem.node_count = uint32_t(tree_.nodes.size()) - growing.stem.first_node;

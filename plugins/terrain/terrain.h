@@ -1,5 +1,6 @@
-// Interface "coppice.terrain": height fields. Heights are bilinear between the samples of a square grid; the same
-// surface is drawn, sampled and stood upon.
+// Interface "coppice.terrain": height fields. Every cell of a square grid is two triangles, cut from its
+// corner of least x and z to that of greatest; level 0 draws exactly these, and height_at samples them: what
+// is drawn is stood upon.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -16,7 +17,9 @@ struct PackedVertex;  // plugins/vegetation/plant/plant.h
 
 struct TerrainLevel {
     uint32_t first_vertex, vertex_count;  // into Terrain::vertices, three a triangle, skirts included
-    float error_m;                        // largest vertical distance to the full grid
+    // Largest vertical distance to the full grid; above level 0 at least 1/16 of the spacing of the level's
+    // vertices, because they carry the ground's colours too.
+    float error_m;
 };
 
 // A square piece with its levels, 0 the finest.

@@ -7,7 +7,9 @@ namespace coppice {
 PlantTurn pack_turn(float x, float y, float z, float w) {
     float length = std::sqrt(x * x + y * y + z * z + w * w);
     if (!(length > 0.0f) || !std::isfinite(length)) return {0, 0, 0, 32767};
-    auto pack = [length](float v) { return int16_t(std::floor(std::clamp(v / length, -1.0f, 1.0f) * 32767.0f + 0.5f)); };
+    auto pack = [length](float v) {
+        return int16_t(std::floor(std::clamp(v / length, -1.0f, 1.0f) * 32767.0f + 0.5f));
+    };
     return {pack(x), pack(y), pack(z), pack(w)};
 }
 

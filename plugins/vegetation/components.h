@@ -28,7 +28,8 @@ inline PlantTurn pack_turn_about_y(float angle_rad) {
     return pack_turn(0.0f, portable_sin(angle_rad * 0.5f), 0.0f, portable_cos(angle_rad * 0.5f));
 }
 
-// Of the entity that owns a tile's chunk. Bounds are relative to the origin and hold all its plants at full size.
+// Of the entity that owns a tile's chunk. Bounds are relative to the origin and hold all its plants at full
+// size.
 struct Tile {
     static constexpr const char* k_component_name = "tile";
     dvec3 origin_world;

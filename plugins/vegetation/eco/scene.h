@@ -35,9 +35,9 @@ struct Scene {
     std::vector<PlantTurn> turns;
     std::vector<PlantModel> plant_models;
     Light light;
-    std::shared_ptr<const Terrain> terrain;  // may be null
-    std::vector<CameraKey> camera_path;      // sorted by time; at least one key
-    float sample_distance_px = 1.0f;         // d' the author recommends
+    std::shared_ptr<Terrain> terrain;    // may be null; shade_ground darkens it
+    std::vector<CameraKey> camera_path;  // sorted by time; at least one key
+    float sample_distance_px = 1.0f;     // d' the author recommends
 };
 
 // Smooth between the keys (cubic, no overshoot in time), clamped at the ends.

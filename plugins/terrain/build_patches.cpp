@@ -1,0 +1,213 @@
+#include "plugins/terrain/build_patches.h"
+
+#include <algorithm>
+#include <array>
+#include "runtime/core/hash.h"
+#include "runtime/core/jobs.h"
+
+namespace coppice {
+namespace {
+
+struct Patch {
+    uint32_t column, row, width, height;  // in cells
+    uint32_t levels() const {
+        uint32_t count = 1;
+        while ((1u << count) <= k_patch_cells && width % (1u << count) == 0 && height % (1u << count) == 0)
+            ++count;
+        return count;
+    }
+};
+
+uint32_t level_vertices(const Patch& patch, uint32_t step) {
+    uint32_t across = patch.width / step, down = patch.height / step;
+    return 6 * across * down + 6 * 2 * (across + down);
+}
+
+// The coarse surface has its diagonals along the fine one's, so the difference is largest at a sample.
+float vertical_error(const HeightField& field, const Patch& patch, uint32_t step) {
+    float error = 0.0f;
+    for (uint32_t z = 0; z < patch.height; z += step)
+        for (uint32_t x = 0; x < patch.width; x += step) {
+            uint32_t column = patch.column + x, row = patch.row + z;
+            float first = field.sample(column, row), last = field.sample(column + step, row + step);
+            float east = field.sample(column + step, row), south = field.sample(column, row + step);
+            for (uint32_t j = 0; j <= step; ++j)
+                for (uint32_t i = 0; i <= step; ++i) {
+                    float u = float(i) / float(step), v = float(j) / float(step);
+                    float height = u > v ? first + u * (east - first) + v * (last - east)
+                                         : first + v * (south - first) + u * (last - south);
+                    error = std::max(error, std::fabs(height - field.sample(column + i, row + j)));
+                }
+        }
+    return error;
+}
+
+struct Writer {
+    const HeightField& field;
+    PackedVertex* vertex;
+    uint32_t* sample;
+    void put(uint32_t column, uint32_t row, float below_m) {
+        *vertex++ = {field.x_of(column), field.sample(column, row) - below_m, field.z_of(row), 0};
+        *sample++ = row * field.columns + column;
+    }
+};
+
+void write_level(const Patch& patch, uint32_t step, float skirt_m, Writer writer) {
+    uint32_t column_end = patch.column + patch.width, row_end = patch.row + patch.height;
+    for (uint32_t row = patch.row; row < row_end; row += step)
+        for (uint32_t column = patch.column; column < column_end; column += step) {
+            writer.put(column, row, 0.0f);
+            writer.put(column, row + step, 0.0f);
+            writer.put(column + step, row + step, 0.0f);
+            writer.put(column, row, 0.0f);
+            writer.put(column + step, row + step, 0.0f);
+            writer.put(column + step, row, 0.0f);
+        }
+    auto hang = [&](uint32_t c0, uint32_t r0, uint32_t c1, uint32_t r1) {
+        writer.put(c0, r0, 0.0f);
+        writer.put(c0, r0, skirt_m);
+        writer.put(c1, r1, skirt_m);
+        writer.put(c0, r0, 0.0f);
+        writer.put(c1, r1, skirt_m);
+        writer.put(c1, r1, 0.0f);
+    };
+    for (uint32_t column = patch.column; column < column_end; column += step) {
+        hang(column + step, patch.row, column, patch.row);
+        hang(column, row_end, column + step, row_end);
+    }
+    for (uint32_t row = patch.row; row < row_end; row += step) {
+        hang(patch.column, row, patch.column, row + step);
+        hang(column_end, row + step, column_end, row);
+    }
+}
+
+// The mean over the samples a vertex of spacing `step` stands for: half way to its neighbours on each side.
+struct Mean {
+    vec3 normal{0.0f}, color{0.0f};
+    float light = 0.0f;
+};
+
+Mean mean_around(const HeightField& field, const GroundSurface& ground, uint32_t sample, uint32_t step) {
+    uint32_t row = sample / field.columns, column = sample % field.columns, reach = step / 2;
+    uint32_t column_end = std::min(column + reach, field.columns - 1),
+             row_end = std::min(row + reach, field.rows - 1);
+    Mean mean;
+    float count = 0.0f;
+    for (uint32_t j = row - std::min(row, reach); j <= row_end; ++j)
+        for (uint32_t i = column - std::min(column, reach); i <= column_end; ++i) {
+            size_t at = size_t(j) * field.columns + i;
+            mean.normal += ground.normals[at];
+            // Not all the way: openness already takes the skylight away, colour stands for the sun's share.
+            mean.color += ground.colors_linear[at] * (0.4f + 0.6f * ground.light[at]);
+            mean.light += ground.light[at];
+            count += 1.0f;
+        }
+    mean.color /= count;
+    mean.light /= count;
+    return mean;
+}
+
+}  // namespace
+
+TerrainMesh build_patches(const HeightField& field) {
+    uint32_t cells_x = field.columns - 1, cells_z = field.rows - 1;
+    uint32_t across = (cells_x + k_patch_cells - 1) / k_patch_cells;
+    uint32_t down = (cells_z + k_patch_cells - 1) / k_patch_cells;
+    std::vector<Patch> cut(size_t(across) * down);
+    TerrainMesh mesh;
+    mesh.patches.resize(cut.size());
+    uint32_t vertex_count = 0;
+    for (uint32_t j = 0; j < down; ++j)
+        for (uint32_t i = 0; i < across; ++i) {
+            Patch patch{i * k_patch_cells, j * k_patch_cells,
+                        std::min(k_patch_cells, cells_x - i * k_patch_cells),
+                        std::min(k_patch_cells, cells_z - j * k_patch_cells)};
+            TerrainPatch& out = mesh.patches[j * across + i];
+            out.first_level = uint32_t(mesh.levels.size());
+            out.level_count = patch.levels();
+            for (uint32_t level = 0; level < out.level_count; ++level) {
+                uint32_t count = level_vertices(patch, 1u << level);
+                mesh.levels.push_back({vertex_count, count, 0.0f});
+                mesh.vertex_level.push_back(uint8_t(level));
+                vertex_count += count;
+            }
+            cut[j * across + i] = patch;
+        }
+
+    std::vector<float> vertical(mesh.levels.size(), 0.0f);
+    parallel_for(cut.size(), 1, [&](size_t first, size_t last) {
+        for (size_t p = first; p < last; ++p)
+            for (uint32_t level = 1; level < mesh.patches[p].level_count; ++level)
+                vertical[mesh.patches[p].first_level + level] = vertical_error(field, cut[p], 1u << level);
+    });
+    auto worst = [&](size_t p) {
+        float error = 0.0f;
+        for (uint32_t level = 0; level < mesh.patches[p].level_count; ++level)
+            error = std::max(error, vertical[mesh.patches[p].first_level + level]);
+        return error;
+    };
+
+    mesh.vertices.resize(vertex_count);
+    mesh.vertex_samples.resize(vertex_count);
+    parallel_for(cut.size(), 1, [&](size_t first, size_t last) {
+        for (size_t p = first; p < last; ++p) {
+            // Two surfaces that meet differ by no more than the sum of their errors; a little more hides what
+            // rounding to pixels opens.
+            float beside = 0.0f;
+            size_t i = p % across, j = p / across;
+            if (i > 0) beside = std::max(beside, worst(p - 1));
+            if (i + 1 < across) beside = std::max(beside, worst(p + 1));
+            if (j > 0) beside = std::max(beside, worst(p - across));
+            if (j + 1 < down) beside = std::max(beside, worst(p + across));
+            TerrainPatch& out = mesh.patches[p];
+            for (uint32_t level = 0; level < out.level_count; ++level) {
+                uint32_t index = out.first_level + level, step = 1u << level;
+                TerrainLevel& at = mesh.levels[index];
+                at.error_m =
+                    level == 0 ? 0.0f
+                               : std::max(vertical[index], k_color_error_share * float(step) * field.cell_m);
+                float skirt_m = vertical[index] + beside + 0.05f * float(step) * field.cell_m;
+                write_level(cut[p], step, skirt_m,
+                            {field, &mesh.vertices[at.first_vertex], &mesh.vertex_samples[at.first_vertex]});
+                for (uint32_t v = at.first_vertex; v < at.first_vertex + at.vertex_count; ++v) {
+                    const PackedVertex& vertex = mesh.vertices[v];
+                    out.bounds_local.include(vec3(vertex.x_plant, vertex.y_plant, vertex.z_plant));
+                }
+            }
+        }
+    });
+    return mesh;
+}
+
+void color_vertices(const HeightField& field, const GroundSurface& ground, TerrainMesh& mesh) {
+    parallel_for(mesh.patches.size(), 1, [&](size_t first, size_t last) {
+        // A patch's vertices repeat few samples many times: each is averaged once.
+        std::vector<uint32_t> words;
+        for (size_t p = first; p < last; ++p) {
+            const TerrainPatch& patch = mesh.patches[p];
+            for (uint32_t index = patch.first_level; index < patch.first_level + patch.level_count; ++index) {
+                const TerrainLevel& level = mesh.levels[index];
+                uint32_t origin = mesh.vertex_samples[mesh.levels[patch.first_level].first_vertex];
+                uint32_t shift = mesh.vertex_level[index], side = (k_patch_cells >> shift) + 1;
+                constexpr uint32_t k_unset =
+                    0xffffffffu;  // no surface: that would be a leaf with all bits set
+                words.assign(size_t(side) * side, k_unset);
+                for (uint32_t v = level.first_vertex; v < level.first_vertex + level.vertex_count; ++v) {
+                    uint32_t sample = mesh.vertex_samples[v];
+                    uint32_t column = sample % field.columns - origin % field.columns;
+                    uint32_t row = sample / field.columns - origin / field.columns;
+                    uint32_t& word = words[size_t(row >> shift) * side + (column >> shift)];
+                    if (word == k_unset) {
+                        Mean mean = mean_around(field, ground, sample, 1u << shift);
+                        Surface surface{normalize_or(mean.normal, vec3(0, 1, 0)), mean.color, mean.light,
+                                        false};
+                        word = encode_surface(surface, mix_bits(sample + mix_bits(shift + 1u)));
+                    }
+                    mesh.vertices[v].surface = word;
+                }
+            }
+        }
+    });
+}
+
+}  // namespace coppice

@@ -1,0 +1,18 @@
+// Reads an *.eco.json scene: plants used, where they stand, terrain, sun, flight. The format is in README.md.
+#pragma once
+#include <string>
+#include "plugins/vegetation/eco/scene.h"
+
+namespace coppice {
+
+struct SceneLoadSettings {
+    const TerrainInterface* terrain = nullptr;  // null: a scene with a terrain is refused
+};
+
+// Deterministic: same files, same scene, on any number of threads. Tiles' bounds hold only the plants' feet
+// until finish_tiles. Every key, number and name is checked; nothing large is allocated before its size is.
+// Errors: file_*, syntax (line and column), name_unknown (with the nearest known), value_out_of_range,
+// limit_exceeded.
+Result<Scene> load_scene(const std::string& path, const SceneLoadSettings& settings);
+
+}  // namespace coppice

@@ -12,15 +12,13 @@ size_t chunk_bytes(const Archetype& archetype, size_t capacity, bool shared) {
     return capacity * (archetype.row_bytes + (shared ? sizeof(Entity) : 0));
 }
 
-// Components that only `to` has become zero.
+// Components that only `to` has are left as they are.
 void copy_row(const Chunk& from, uint32_t from_row, const Chunk& to, uint32_t to_row) {
     for (const Archetype::Column& column : to.archetype->columns) {
-        std::byte* target = to.value(column, to_row);
         uint32_t offset = from.archetype->row_offset[column.component];
-        if (offset == Archetype::k_absent)
-            std::memset(target, 0, column.size_bytes);
-        else
-            std::memcpy(target, from.value(offset, column.size_bytes, from_row), column.size_bytes);
+        if (offset != Archetype::k_absent)
+            std::memcpy(to.value(column, to_row), from.value(offset, column.size_bytes, from_row),
+                        column.size_bytes);
     }
 }
 }  // namespace

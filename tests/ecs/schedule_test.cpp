@@ -52,6 +52,13 @@ TEST(Schedule, DisjointSystemsShareABatch) {
                                                      {"edit"},
                                                      {"read_by_owner"}}));
     EXPECT_TRUE(schedule.batches(Phase::cull).empty());
+
+    // The last one waits for the deepest of those it conflicts with, not for the latest.
+    schedule.add(Phase::lod, 1, "a", [](Query<Age>) {});
+    schedule.add(Phase::lod, 2, "b", [](Query<const Age, Position>) {});
+    schedule.add(Phase::lod, 3, "c", [](Query<Velocity>) {});
+    schedule.add(Phase::lod, 4, "d", [](Query<const Position, const Velocity>) {});
+    EXPECT_EQ(schedule.batches(Phase::lod), (Names{{"a", "c"}, {"b"}, {"d"}}));
 }
 
 TEST(Schedule, CommandsAreCarriedOutAtPhaseEndInOrderOfSystems) {

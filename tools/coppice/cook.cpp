@@ -34,7 +34,8 @@ Status run(const CookCommand& command) {
     COPPICE_CHECK(registry.load("modeller"));
     const auto* modeller = registry.find<ModellerInterface>(k_modeller_interface, k_modeller_version);
     const ImagesInterface* images = nullptr;
-    if (registry.load("images")) images = registry.find<ImagesInterface>(k_images_interface, k_images_version);
+    if (!command.source.ends_with(".json") && registry.load("images"))
+        images = registry.find<ImagesInterface>(k_images_interface, k_images_version);
 
     Stopwatch clock;
     COPPICE_CHECK(cook_file(command.source, command.out, command.variation, command.settings, modeller, images));

@@ -1,7 +1,8 @@
 #include "tools/coppice/play_host.h"
 
-#include <filesystem>
-#include <optional>
+#include <algorithm>
+
+
 #include "plugins/modeller/modeller.h"
 #include "plugins/vegetation/cook/cook_file.h"
 #include "plugins/vegetation/eco/camera_path.h"
@@ -30,8 +31,12 @@ PlayHost::~PlayHost() = default;
 
 Status PlayHost::load_plugins() {
     for (const char* name : {"terrain", "modeller", "vegetation"}) COPPICE_CHECK(registry.load(name));
-    if (registry.load("images")) images = registry.find<ImagesInterface>(k_images_interface, k_images_version);
     return {};
+}
+
+const ImagesInterface* PlayHost::find_images() {
+    if (!registry.load("images")) return nullptr;
+    return registry.find<ImagesInterface>(k_images_interface, k_images_version);
 }
 
 // Cooks what is missing, all models side by side, and maps every plant.
@@ -39,28 +44,20 @@ Result<std::vector<Plant>> PlayHost::load_plants(const PlayOptions& options) {
     const auto* modeller = registry.find<ModellerInterface>(k_modeller_interface, k_modeller_version);
     const std::string cache_dir = options.cache_dir.empty() ? default_cache_dir() : options.cache_dir;
     const size_t count = scene.models.size();
-    std::vector<std::string> paths(count);
-    std::vector<size_t> missing;
+    const bool textured = std::any_of(scene.models.begin(), scene.models.end(),
+                                      [](const SceneModel& model) { return !model.source_path.ends_with(".json"); });
+    const ImagesInterface* images = textured ? find_images() : nullptr;
+    std::vector<Result<std::string>> paths(count);
     Stopwatch cook_clock;
-    for (size_t i = 0; i < count; ++i) {
-        const SceneModel& model = scene.models[i];
-        COPPICE_TRY(paths[i], cooked_path(cache_dir, model.source_path, model.variation, CookSettings{}));
-        if (!std::filesystem::exists(paths[i])) missing.push_back(i);
-    }
-    if (!missing.empty()) {
-        Progress progress("cooking plants", missing.size());
-        std::vector<std::optional<Error>> errors(missing.size());
-        parallel_for(missing.size(), 1, [&](size_t first, size_t last) {
+    {
+        Progress progress("cooking plants", count);
+        parallel_for(count, 1, [&](size_t first, size_t last) {
             for (size_t i = first; i < last; ++i) {
-                const SceneModel& model = scene.models[missing[i]];
-                const Status status = cook_file(model.source_path, paths[missing[i]], model.variation, CookSettings{},
-                                                modeller, images);
-                if (!status) errors[i] = status.error();
+                const SceneModel& model = scene.models[i];
+                paths[i] = find_or_cook(cache_dir, model.source_path, model.variation, CookSettings{}, modeller, images);
                 progress.advance();
             }
         });
-        for (std::optional<Error>& error : errors)
-            if (error) return fail(std::move(*error));
     }
     load.cook_ms = cook_clock.ms();
 
@@ -68,7 +65,8 @@ Result<std::vector<Plant>> PlayHost::load_plants(const PlayOptions& options) {
     std::vector<Plant> plants;
     plants.reserve(count);
     for (size_t i = 0; i < count; ++i) {
-        COPPICE_TRY(Plant plant, load_plant(paths[i]));
+        COPPICE_TRY(const std::string path, std::move(paths[i]));
+        COPPICE_TRY(Plant plant, load_plant(path));
         hashes.emplace_back("plant " + scene.models[i].name, plant.content_hash);
         plants.push_back(std::move(plant));
     }

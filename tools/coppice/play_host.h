@@ -62,10 +62,11 @@ class PlayHost {
     // Of the last frame drawn.
     Result<Picture> read_picture() const;
     Status resize(uint32_t width_px, uint32_t height_px);
+    // Loaded when first asked for, because it brings a hundred libraries along. nullptr where it is not installed.
+    const ImagesInterface* find_images();
 
     // In the order of what needs what, destroyed from the last to the first.
     Registry registry;
-    const ImagesInterface* images = nullptr;  // nullptr where the plugin is not installed
     Scene scene;
     std::vector<std::pair<std::string, uint64_t>> hashes;  // of what was loaded
     LoadTimes load{};

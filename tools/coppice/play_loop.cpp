@@ -29,17 +29,17 @@ double psnr_db(const Picture& picture, const Picture& reference) {
     return mean > 0.0 ? std::min(99.0, 10.0 * std::log10(255.0 * 255.0 / mean)) : 99.0;
 }
 
-Result<PlayPicture> keep_picture(const PlayHost& host, const PlayOptions& options, uint32_t frame,
+// images may be null: PPM then.
+Result<PlayPicture> keep_picture(const ImagesInterface* images, const PlayOptions& options, uint32_t frame,
                                  const Picture& picture) {
     PlayPicture kept{frame, double(frame) / options.fps,
-                     fmt::format("frame_{:04}.{}", frame, host.images ? "png" : "ppm"), {},
+                     fmt::format("frame_{:04}.{}", frame, images ? "png" : "ppm"), {},
                      hash_bytes(picture.rgba.data(), picture.rgba.size())};
-    if (!host.images) {
-        if (!options.out.empty()) COPPICE_CHECK(write_ppm(options.out + "/" + kept.file, picture));
-        return kept;
+    const std::string path = options.out + "/" + kept.file;
+    if (images) {
+        COPPICE_TRY(kept.png, images->encode_png(picture));
     }
-    COPPICE_TRY(kept.png, host.images->encode_png(picture));
-    if (!options.out.empty()) COPPICE_CHECK(write_file(options.out + "/" + kept.file, kept.png));
+    if (!options.out.empty()) COPPICE_CHECK(images ? write_file(path, kept.png) : write_ppm(path, picture));
     return kept;
 }
 
@@ -132,6 +132,10 @@ Result<PlayRecord> play_headless(PlayHost& host, const PlayOptions& options) {
         return std::binary_search(frames.begin(), frames.end(), frame);
     };
 
+    const ImagesInterface* images = nullptr;
+    if (!picture_frames.empty() && !(images = host.find_images()))
+        log_note("the images plugin is not installed: pictures are written as PPM");
+
     PassTimes pass_times(record);
     host.read_times = [&pass_times](uint32_t slot, auto sections) { pass_times.read(slot, sections); };
     for (uint32_t i = 0; i < options.warmup; ++i) {
@@ -152,7 +156,7 @@ Result<PlayRecord> play_headless(PlayHost& host, const PlayOptions& options) {
         if (kept || compared) {
             COPPICE_TRY(Picture picture, host.read_picture());
             if (kept) {
-                COPPICE_TRY(PlayPicture one, keep_picture(host, options, i, picture));
+                COPPICE_TRY(PlayPicture one, keep_picture(images, options, i, picture));
                 record.pictures.push_back(std::move(one));
             }
             if (compared) {
@@ -169,8 +173,6 @@ Result<PlayRecord> play_headless(PlayHost& host, const PlayOptions& options) {
     record.scene_triangles = record.frames.back().report.scene_triangles;
     record.validation_messages = host.device->validation_messages();
     record.hashes.emplace_back("world", host.world.hash());
-    if (!host.images && !record.pictures.empty())
-        log_note("the images plugin is not installed: pictures are written as PPM");
     return record;
 }
 

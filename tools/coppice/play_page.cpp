@@ -21,9 +21,9 @@ main { max-width:1040px; margin:0 auto; padding:48px 24px 72px }
 h1 { font-size:34px; line-height:1.15; margin:0 0 8px; letter-spacing:-.01em }
 h2 { font-size:21px; margin:48px 0 4px }
 p { margin:4px 0 14px; max-width:46em } .soft { color:var(--soft) }
-.cards { display:grid; grid-template-columns:repeat(auto-fit,minmax(210px,1fr)); gap:14px; margin:28px 0 8px }
+.cards { display:grid; grid-template-columns:repeat(auto-fit,minmax(176px,1fr)); gap:14px; margin:28px 0 8px }
 .card { background:#fff; border:1px solid var(--line); border-radius:12px; padding:16px 18px }
-.card b { display:block; font-size:30px; line-height:1.2; color:var(--leaf); font-variant-numeric:tabular-nums }
+.card b { display:block; font-size:28px; line-height:1.2; color:var(--leaf); font-variant-numeric:tabular-nums }
 .card span { color:var(--soft); font-size:14px }
 figure { margin:0 } figcaption { color:var(--soft); font-size:14px; padding:6px 2px 0 }
 img { width:100%; display:block; border-radius:10px }

@@ -13,6 +13,7 @@ namespace coppice {
 namespace {
 
 constexpr int64_t k_tile_limit = 16;       // repeats of a texture on one triangle that are cut
+constexpr size_t k_least_corners = 8;      // of a window, whatever the target
 constexpr double k_uv_slack = 1.0e-4;      // coordinates meant to end at a texture's border may miss it by this
 constexpr double k_key_steps = 65536.0;    // regions are the same where their coordinates agree to 1 / this
 
@@ -35,6 +36,20 @@ struct Region {
     std::array<dvec2, 4> uvs;   // counter-clockwise or clockwise as in the texture
     std::array<int, 4> outline;  // order of uvs round the region
     int corner_count;
+    uint32_t element;
+    Window window;
+    double uv_area() const {
+        double twice = 0.0;
+        for (int i = 2; i < corner_count; ++i)
+            twice += cross_at(uvs[size_t(outline[0])], uvs[size_t(outline[size_t(i - 1)])], uvs[size_t(outline[size_t(i)])]);
+        return std::fabs(twice) * 0.5;
+    }
+};
+
+// How much the mesh shows of a window.
+struct WindowUse {
+    double uv_area = 0.0;
+    size_t triangles = 0;
 };
 
 // A window's mesh clipped to a region, in weights of the region's vertices 1 and 2.
@@ -49,8 +64,8 @@ struct ClippedCorner {
     vec3 color;
 };
 
-// Which way round and which repeats; and how far the region was moved to get there.
-Window find_window(const Region& region, GltfWrap wrap_s, GltfWrap wrap_t, dvec2& shift) {
+// Finds the repeats of the texture that the region shows, and moves the region to the first that look alike.
+void move_to_window(Region& region, GltfWrap wrap_s, GltfWrap wrap_t) {
     dvec2 low = region.uvs[0], high = low;
     for (int i = 1; i < region.corner_count; ++i) {
         low = glm::min(low, region.uvs[size_t(i)]);
@@ -64,10 +79,10 @@ Window find_window(const Region& region, GltfWrap wrap_s, GltfWrap wrap_t, dvec2
         first -= moved;
         return double(moved);
     };
-    Window window;
-    shift.x = along(low.x, high.x, wrap_s, window.first_u, window.count_u);
-    shift.y = along(low.y, high.y, wrap_t, window.first_v, window.count_v);
-    return window;
+    dvec2 shift;
+    shift.x = along(low.x, high.x, wrap_s, region.window.first_u, region.window.count_u);
+    shift.y = along(low.y, high.y, wrap_t, region.window.first_v, region.window.count_v);
+    for (int i = 0; i < region.corner_count; ++i) region.uvs[size_t(i)] -= shift;
 }
 
 class Cutter {
@@ -84,18 +99,24 @@ class Cutter {
 
     ImportMesh run() {
         out_.element_count = mesh_.element_count;
+        std::vector<Region> regions;
         for (size_t t = 0; t < mesh_.triangle_count();) {
             Region region = triangle_region(t);
-            bool paired = t + 1 < mesh_.triangle_count() && add_partner(region, t + 1);
-            emit(region, mesh_.elements[t]);
-            t += paired ? 2 : 1;
+            size_t triangles = t + 1 < mesh_.triangle_count() && add_partner(region, t + 1) ? 2 : 1;
+            move_to_window(region, wrap_s_, wrap_t_);
+            WindowUse& use = uses_[region.window];
+            use.uv_area += region.uv_area();
+            use.triangles += triangles;
+            t += triangles;
+            regions.push_back(region);
         }
+        for (const Region& region : regions) emit(region);
         return std::move(out_);
     }
 
   private:
     Region triangle_region(size_t t) const {
-        Region region{{}, {}, {0, 1, 2, 3}, 3};
+        Region region{{}, {}, {0, 1, 2, 3}, 3, mesh_.elements[t], {}};
         for (size_t c = 0; c < 3; ++c) {
             region.vertices[c] = mesh_.indices[t * 3 + c];
             region.uvs[c] = dvec2(mesh_.uvs[region.vertices[c]]);
@@ -158,26 +179,23 @@ class Cutter {
         return true;
     }
 
-    void emit(Region region, uint32_t element) {
-        double area = cross_at(region.uvs[0], region.uvs[1], region.uvs[2]);
-        dvec2 shift(0.0);
-        Window window = find_window(region, wrap_s_, wrap_t_, shift);
-        bool flat = std::fabs(area) < 1.0e-14;
+    void emit(const Region& region) {
+        const Window& window = region.window;
+        bool flat = region.uv_area() < 1.0e-14;
         if (flat || window.count_u > k_tile_limit || window.count_v > k_tile_limit ||
             window.count_u * window.count_v > k_tile_limit) {
             vec2 middle((region.uvs[0] + region.uvs[1] + region.uvs[2]) / 3.0);
             if (flat && texture_.texel(middle, 0).w == 0.0f) return;
-            emit_whole(region, texture_.nearest_color(middle), element);
+            emit_whole(region, texture_.nearest_color(middle));
             return;
         }
         std::vector<int64_t> key{window.first_u, window.first_v, window.count_u, window.count_v};
         for (int i = 0; i < region.corner_count; ++i) {
-            region.uvs[size_t(i)] -= shift;
             key.push_back(int64_t(std::floor(region.uvs[size_t(i)].x * k_key_steps + 0.5)));
             key.push_back(int64_t(std::floor(region.uvs[size_t(i)].y * k_key_steps + 0.5)));
         }
         auto found = cuts_.find(key);
-        if (found == cuts_.end()) found = cuts_.emplace(std::move(key), cut_region(window, region)).first;
+        if (found == cuts_.end()) found = cuts_.emplace(std::move(key), cut_region(region)).first;
         const Cut& cut = found->second;
         uint32_t first = uint32_t(out_.positions_plant.size());
         for (size_t i = 0; i < cut.weights.size(); ++i) {
@@ -187,10 +205,10 @@ class Cutter {
             out_.colors_linear.push_back(blend(mesh_.colors_linear, region, cut.weights[i]) * cut.colors[i]);
         }
         for (uint32_t index : cut.indices) out_.indices.push_back(first + index);
-        out_.elements.insert(out_.elements.end(), cut.indices.size() / 3, element);
+        out_.elements.insert(out_.elements.end(), cut.indices.size() / 3, region.element);
     }
 
-    void emit_whole(const Region& region, vec3 color, uint32_t element) {
+    void emit_whole(const Region& region, vec3 color) {
         uint32_t first = uint32_t(out_.positions_plant.size());
         for (uint32_t v : region.vertices) {
             out_.positions_plant.push_back(mesh_.positions_plant[v]);
@@ -198,12 +216,12 @@ class Cutter {
             out_.colors_linear.push_back(mesh_.colors_linear[v] * color);
         }
         out_.indices.insert(out_.indices.end(), {first, first + 1, first + 2});
-        out_.elements.push_back(element);
+        out_.elements.push_back(region.element);
     }
 
     // Clips the window's triangles to the region, edge by edge.
-    Cut cut_region(const Window& window, const Region& region) {
-        const WindowMesh& source = window_mesh(window);
+    Cut cut_region(const Region& region) {
+        const WindowMesh& source = window_mesh(region.window);
         bool clockwise = cross_at(region.uvs[0], region.uvs[1], region.uvs[2]) < 0.0;
         std::array<dvec2, 4> outline{};
         size_t n = size_t(region.corner_count);
@@ -273,6 +291,15 @@ class Cutter {
         return found->second;
     }
 
+    // The mesh's triangles, dealt out to its windows by the triangles that show them. An outline of n corners makes about
+    // n triangles each time the whole window is shown.
+    size_t corner_target(const Window& window) const {
+        const WindowUse& use = uses_.at(window);
+        double shown = std::max(use.uv_area / double(window.count_u * window.count_v), 1.0e-6);
+        double share = double(use.triangles) / double(mesh_.triangle_count());
+        return std::max(k_least_corners, size_t(double(settings_.triangle_target) * share / shown));
+    }
+
     // Mean alpha of `step` x `step` texels, from texel (x, y) of the repeated texture on.
     float mean_alpha(int64_t x, int64_t y, int64_t step) const {
         uint64_t sum = 0;
@@ -324,7 +351,7 @@ class Cutter {
         for (const Ring& ring : rings) area += signed_area(ring);
         OutlineLimits limits;
         limits.displaced_area = double(settings_.displaced_share) * std::fabs(area);
-        limits.corner_count = settings_.corner_limit;
+        limits.corner_count = corner_target(window);
         limits.low = dvec2(0.0);
         limits.high = dvec2(double(width), double(height));
         FlatMesh flat = triangulate_outline(simplify_outline(rings, limits));
@@ -338,7 +365,26 @@ class Cutter {
         }
         mesh.indices = std::move(flat.indices);
         mesh.colors = average_colors(texture_, uvs, mesh.indices);
+        keep_mean(mesh);
         return mesh;
+    }
+
+    // A rough outline takes in transparent texels, which have no colour to give; so the mean is put right at the end.
+    void keep_mean(WindowMesh& mesh) const {
+        vec4 all = texture_.texel(vec2(0.0f), texture_.level_count() - 1);
+        dvec3 sum(0.0);
+        double area = 0.0;
+        for (size_t t = 0; t < mesh.indices.size(); t += 3) {
+            const uint32_t* v = &mesh.indices[t];
+            double weight = cross_at(mesh.uvs[v[0]], mesh.uvs[v[1]], mesh.uvs[v[2]]);
+            sum += dvec3(mesh.colors[v[0]] + mesh.colors[v[1]] + mesh.colors[v[2]]) * (weight / 3.0);
+            area += weight;
+        }
+        if (!(all.w > 0.0f) || !(area > 0.0)) return;
+        for (int c = 0; c < 3; ++c) {
+            float factor = sum[c] > 0.0 ? float(double(all[c] / all.w) * area / sum[c]) : 1.0f;
+            for (vec3& color : mesh.colors) color[c] = std::min(color[c] * factor, 1.0f);
+        }
     }
 
     const ImportMesh& mesh_;
@@ -347,6 +393,7 @@ class Cutter {
     float opaque_alpha_;
     const AlphaCutSettings& settings_;
     TexturePyramid texture_;
+    std::map<Window, WindowUse> uses_;
     std::map<Window, WindowMesh> windows_;
     std::map<std::vector<int64_t>, Cut> cuts_;
     ImportMesh out_;

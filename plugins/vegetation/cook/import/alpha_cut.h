@@ -15,14 +15,16 @@ struct AlphaCutSettings {
     // Area that the simplified outline may put on the wrong side of the true one, as a share of the opaque area. 0.04
     // makes about 9 triangles of an oval leaf.
     float displaced_share = 0.04f;
-    // Corners of all outlines in one texture; beyond it, outlines become rougher.
-    uint32_t corner_limit = 12'000;
+    // Triangles that all cards of the plant may become together; beyond it, outlines become rougher than displaced_share
+    // asks for, but no card gets fewer than a few.
+    uint32_t triangle_target = 250'000;
     // Sides of the grid the outline is traced on; larger textures are averaged down.
     uint32_t grid_side_limit = 2048;
 };
 
 // mesh: with uvs and elements. Returns what is opaque of it, coloured, without uvs. Triangles whose texture repeats more
-// than a few times are left whole. opaque_alpha: in (0, 255], texels of at least this alpha are opaque.
+// than a few times are left whole. opaque_alpha: in (0, 255], texels of at least this alpha are opaque. settings:
+// triangle_target is this mesh's share.
 ImportMesh cut_alpha(const ImportMesh& mesh, const Picture& picture, GltfWrap wrap_s, GltfWrap wrap_t,
                      float opaque_alpha, const AlphaCutSettings& settings);
 

@@ -12,11 +12,17 @@ float square_length(const ImportMesh& mesh, uint32_t a, uint32_t b) {
     return glm::dot(d, d);
 }
 
-size_t count_added(const ImportMesh& mesh, float square_limit) {
+bool is_long(const TexturedMesh& textured, uint32_t a, uint32_t b, float square_limit) {
+    vec2 texels = (textured.mesh->uvs[a] - textured.mesh->uvs[b]) * textured.texels;
+    return square_length(*textured.mesh, a, b) > square_limit && glm::dot(texels, texels) > 4.0f;
+}
+
+size_t count_added(const TexturedMesh& textured, float square_limit) {
+    const ImportMesh& mesh = *textured.mesh;
     size_t added = 0;
     for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
         for (size_t c = 0; c < 3; ++c)
-            added += square_length(mesh, mesh.indices[i + c], mesh.indices[i + (c + 1) % 3]) > square_limit;
+            added += is_long(textured, mesh.indices[i + c], mesh.indices[i + (c + 1) % 3], square_limit);
     return added;
 }
 
@@ -25,12 +31,13 @@ using Middles = std::vector<std::pair<std::pair<uint32_t, uint32_t>, uint32_t>>;
 
 std::pair<uint32_t, uint32_t> edge_of(uint32_t a, uint32_t b) { return std::minmax(a, b); }
 
-Middles make_middles(ImportMesh& mesh, float square_limit) {
+Middles make_middles(const TexturedMesh& textured, float square_limit) {
+    ImportMesh& mesh = *textured.mesh;
     Middles middles;
     for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
         for (size_t c = 0; c < 3; ++c) {
             uint32_t a = mesh.indices[i + c], b = mesh.indices[i + (c + 1) % 3];
-            if (square_length(mesh, a, b) > square_limit) middles.push_back({edge_of(a, b), 0});
+            if (is_long(textured, a, b, square_limit)) middles.push_back({edge_of(a, b), 0});
         }
     std::sort(middles.begin(), middles.end());
     middles.erase(std::unique(middles.begin(), middles.end()), middles.end());
@@ -45,8 +52,9 @@ Middles make_middles(ImportMesh& mesh, float square_limit) {
     return middles;
 }
 
-void divide(ImportMesh& mesh, float square_limit) {
-    Middles middles = make_middles(mesh, square_limit);
+void divide(const TexturedMesh& textured, float square_limit) {
+    ImportMesh& mesh = *textured.mesh;
+    Middles middles = make_middles(textured, square_limit);
     if (middles.empty()) return;
     std::vector<uint32_t> indices, elements;
     for (size_t t = 0; t < mesh.triangle_count(); ++t) {
@@ -91,20 +99,22 @@ void divide(ImportMesh& mesh, float square_limit) {
 
 }  // namespace
 
-void divide_long_edges(const std::vector<ImportMesh*>& meshes, float edge_m, size_t added_triangle_limit) {
+void divide_long_edges(const std::vector<TexturedMesh>& meshes, float edge_m, size_t added_triangle_limit) {
     float longest = 0.0f;
-    for (const ImportMesh* mesh : meshes)
-        for (size_t i = 0; i + 2 < mesh->indices.size(); i += 3)
-            for (size_t c = 0; c < 3; ++c)
-                longest = std::max(longest, square_length(*mesh, mesh->indices[i + c], mesh->indices[i + (c + 1) % 3]));
+    for (const TexturedMesh& textured : meshes)
+        for (size_t i = 0; i + 2 < textured.mesh->indices.size(); i += 3)
+            for (size_t c = 0; c < 3; ++c) {
+                const uint32_t* v = &textured.mesh->indices[i];
+                longest = std::max(longest, square_length(*textured.mesh, v[c], v[(c + 1) % 3]));
+            }
     // From the longest edges down, so that what the limit leaves is even.
     for (float limit = std::sqrt(longest) * 0.75f;; limit *= 0.75f) {
         limit = std::max(limit, edge_m);
         size_t added = 0;
-        for (const ImportMesh* mesh : meshes) added += count_added(*mesh, limit * limit);
+        for (const TexturedMesh& mesh : meshes) added += count_added(mesh, limit * limit);
         if (added > added_triangle_limit || (added == 0 && limit <= edge_m)) return;
         added_triangle_limit -= added;
-        for (ImportMesh* mesh : meshes) divide(*mesh, limit * limit);
+        for (const TexturedMesh& mesh : meshes) divide(mesh, limit * limit);
         if (added > 0) limit /= 0.75f;  // halves may still be too long
     }
 }

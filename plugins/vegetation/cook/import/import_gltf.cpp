@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <tuple>
 #include "plugins/vegetation/cook/import/average_colors.h"
 #include "plugins/vegetation/cook/import/divide_edges.h"
@@ -19,6 +20,7 @@ namespace coppice {
 namespace {
 
 constexpr size_t k_placement_limit = size_t(1) << 20;
+constexpr size_t k_least_added = 2000;  // triangles that dividing may add to any plant
 
 bool names_any(const std::string& name, std::initializer_list<std::string_view> words) {
     std::string lower = name;
@@ -65,6 +67,7 @@ class Importer {
 
     Result<PlantDescription> run(const std::string& plant_name) {
         COPPICE_TRY(auto placements, place_meshes(document_, buffers_, k_placement_limit));
+        masked_triangle_count_ = count_masked_triangles(placements);
         uint32_t loaded_mesh = k_gltf_none;
         std::vector<Prepared> prepared;
         for (const GltfPlacement& placement : placements) {
@@ -91,6 +94,18 @@ class Importer {
 
     std::string primitive_place(uint32_t mesh, size_t primitive) const {
         return "meshes[" + std::to_string(mesh) + "].primitives[" + std::to_string(primitive) + "]";
+    }
+
+    // Of all places together, as far as the file's counts can be believed: the cards' triangle target is dealt out by it.
+    size_t count_masked_triangles(const std::vector<GltfPlacement>& placements) const {
+        size_t count = 0;
+        for (const GltfPlacement& placement : placements)
+            for (const GltfPrimitive& primitive : document_.meshes[placement.mesh].primitives) {
+                if (primitive.material == k_gltf_none || !document_.materials[primitive.material].masked) continue;
+                uint32_t corners = primitive.indices != k_gltf_none ? primitive.indices : primitive.position;
+                if (corners != k_gltf_none) count += document_.accessors[corners].count / 3;
+            }
+        return std::max<size_t>(count, 1);
     }
 
     Result<const Picture*> load_picture(uint32_t index) {
@@ -173,12 +188,15 @@ class Importer {
         for (size_t i = 3; all_opaque && i < picture->rgba.size(); i += 4)
             all_opaque = float(picture->rgba[i]) >= opaque_alpha;
         if (all_opaque) {
-            log_warning("{}: materials[{}] \"{}\" is alpha-masked, but images[{}] has no transparent texel: its cards stay whole",
+            if (whole_materials_.insert(material_index).second)
+                log_warning("{}: materials[{}] \"{}\" is alpha-masked, but images[{}] has no transparent texel: its cards stay whole",
                         document_.file, material_index, material.name, image);
             return {};
         }
         const GltfTexture& wraps = document_.textures[texture];
-        ready.mesh = cut_alpha(ready.mesh, *picture, wraps.wrap_s, wraps.wrap_t, opaque_alpha, settings_.alpha_cut);
+        AlphaCutSettings share = settings_.alpha_cut;
+        share.triangle_target = uint32_t(uint64_t(share.triangle_target) * ready.mesh.triangle_count() / masked_triangle_count_);
+        ready.mesh = cut_alpha(ready.mesh, *picture, wraps.wrap_s, wraps.wrap_t, opaque_alpha, share);
         ready.texture = k_gltf_none;
         return {};
     }
@@ -223,10 +241,15 @@ class Importer {
     }
 
     Result<PlantDescription> assemble(const std::string& plant_name) {
-        std::vector<ImportMesh*> textured;
-        for (Piece& piece : pieces_)
-            if (piece.texture != k_gltf_none) textured.push_back(&piece.mesh);
-        divide_long_edges(textured, settings_.texture_detail_m, settings_.added_triangle_limit);
+        std::vector<TexturedMesh> textured;
+        for (Piece& piece : pieces_) {
+            if (piece.texture == k_gltf_none) continue;
+            const Picture& picture = pictures_.at(document_.textures[piece.texture].image);
+            textured.push_back({&piece.mesh, vec2(float(picture.width), float(picture.height))});
+        }
+        // A small plant stays small.
+        divide_long_edges(textured, settings_.texture_detail_m,
+                          std::min<size_t>(settings_.added_triangle_limit, k_least_added + triangle_count_));
 
         std::map<uint32_t, TexturePyramid> pyramids;
         std::vector<uint32_t> element_counts(parts_.size(), 0);
@@ -280,7 +303,8 @@ class Importer {
     std::map<std::string, uint32_t> name_uses_;
     std::vector<PartDescription> parts_;
     std::vector<Piece> pieces_;
-    size_t triangle_count_ = 0;
+    size_t triangle_count_ = 0, masked_triangle_count_ = 1;
+    std::set<uint32_t> whole_materials_;  // masked, but nothing to cut
     size_t skipped_primitives_ = 0;
 };
 

@@ -9,8 +9,8 @@ namespace coppice {
 namespace {
 
 constexpr uint32_t k_none = UINT32_MAX;
-// Rings may vanish until the total area has changed by this share.
-constexpr double k_vanished_share = 0.003;
+// Rings may vanish until the total area has changed by this share, which is then given back to the others.
+constexpr double k_vanished_share = 0.05;
 
 struct Corner {
     dvec2 at;
@@ -99,7 +99,9 @@ class Simplifier {
             else if (is_free(step))
                 collapse(step);
         }
-        return collect();
+        std::vector<Ring> rings = collect();
+        give_back(rings);
+        return rings;
     }
 
   private:
@@ -213,6 +215,29 @@ class Simplifier {
         displaced_area_ += step.cost;
         for (uint32_t i : {a, b, c}) corners_[i].alive = false;
         alive_count_ -= 3;
+    }
+
+    // Moves all outlines a little, in or out, until the area is again what it was. Twice, because corners round it off.
+    void give_back(std::vector<Ring>& rings) const {
+        for (int round = 0; round < 2; ++round) {
+            double missing = total_area_, length = 0.0;
+            for (const Ring& ring : rings) {
+                missing -= signed_area(ring);
+                for (size_t i = 0; i < ring.size(); ++i) length += glm::length(ring[(i + 1) % ring.size()] - ring[i]);
+            }
+            if (!(length > 0.0)) return;
+            double outward = missing / length;
+            for (Ring& ring : rings) {
+                Ring old = ring;
+                for (size_t i = 0; i < old.size(); ++i) {
+                    dvec2 in = glm::normalize(old[i] - old[(i + old.size() - 1) % old.size()]);
+                    dvec2 out = glm::normalize(old[(i + 1) % old.size()] - old[i]);
+                    dvec2 both(in.y + out.y, -in.x - out.x);  // sum of the two sides' outward normals
+                    ring[i] += both * (outward / std::max(1.0 + glm::dot(in, out), 0.25));
+                    ring[i] = glm::clamp(ring[i], limits_.low, limits_.high);
+                }
+            }
+        }
     }
 
     std::vector<Ring> collect() const {

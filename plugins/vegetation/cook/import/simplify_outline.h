@@ -1,7 +1,8 @@
 // Fewer corners for outlines, every area kept: two neighbouring corners become one, placed so that what the outline gains
 // on one side it loses on the other. No two pieces of outline ever come to cross, and nothing changes sides.
 // Source: Kronenfeld et al. 2020, "Simplification of polylines by segment collapse: minimizing areal displacement while
-// preserving area". Deviates: one queue for all rings; rings of three corners may vanish whole.
+// preserving area". Deviates: one queue for all rings; rings of three corners may vanish whole, and what
+// area that costs is made up for by moving all outlines in or out by a fraction of a texel.
 #pragma once
 #include <cstdint>
 #include <vector>

@@ -107,6 +107,18 @@ Mean mean_around(const HeightField& field, const GroundSurface& ground, uint32_t
     return mean;
 }
 
+// The nearest color a surface word can hold. What rounding leaves goes to the neighbours (Floyd and
+// Steinberg): chance alone would stain the ground, where the vertices lie metres apart.
+vec3 nearest_color(vec3 color_linear) {
+    vec3 steps(31.0f, 63.0f, 31.0f), out;
+    for (int c = 0; c < 3; ++c) {
+        float coded = std::sqrt(glm::clamp(color_linear[c], 0.0f, 1.0f));
+        float level = std::floor(coded * steps[c] + 0.5f) / steps[c];
+        out[c] = level * level;
+    }
+    return out;
+}
+
 }  // namespace
 
 TerrainMesh build_patches(const HeightField& field) {
@@ -181,29 +193,42 @@ TerrainMesh build_patches(const HeightField& field) {
 
 void color_vertices(const HeightField& field, const GroundSurface& ground, TerrainMesh& mesh) {
     parallel_for(mesh.patches.size(), 1, [&](size_t first, size_t last) {
-        // A patch's vertices repeat few samples many times: each is averaged once.
         std::vector<uint32_t> words;
+        std::vector<vec3> owed;
         for (size_t p = first; p < last; ++p) {
             const TerrainPatch& patch = mesh.patches[p];
+            uint32_t corner = mesh.vertex_samples[mesh.levels[patch.first_level].first_vertex];
+            uint32_t column_first = corner % field.columns, row_first = corner / field.columns;
             for (uint32_t index = patch.first_level; index < patch.first_level + patch.level_count; ++index) {
+                uint32_t shift = mesh.vertex_level[index];
+                uint32_t across = (std::min(k_patch_cells, field.columns - 1 - column_first) >> shift) + 1;
+                uint32_t down = (std::min(k_patch_cells, field.rows - 1 - row_first) >> shift) + 1;
+                words.resize(size_t(across) * down);
+                owed.assign(words.size() + across + 1, vec3(0.0f));
+                for (uint32_t row = 0; row < down; ++row)
+                    for (uint32_t column = 0; column < across; ++column) {
+                        size_t at = size_t(row) * across + column;
+                        uint32_t sample =
+                            ((row << shift) + row_first) * field.columns + (column << shift) + column_first;
+                        Mean mean = mean_around(field, ground, sample, 1u << shift);
+                        vec3 wanted = mean.color + owed[at], color = nearest_color(wanted);
+                        vec3 rest = (wanted - color) * (1.0f / 16.0f);
+                        if (column + 1 < across) {
+                            owed[at + 1] += rest * 7.0f;
+                            owed[at + across + 1] += rest;
+                        }
+                        if (column > 0) owed[at + across - 1] += rest * 3.0f;
+                        owed[at + across] += rest * 5.0f;
+                        words[at] = encode_surface(
+                            {normalize_or(mean.normal, vec3(0, 1, 0)), color, mean.light, false},
+                            mix_bits(sample + mix_bits(shift + 1u)));
+                    }
                 const TerrainLevel& level = mesh.levels[index];
-                uint32_t origin = mesh.vertex_samples[mesh.levels[patch.first_level].first_vertex];
-                uint32_t shift = mesh.vertex_level[index], side = (k_patch_cells >> shift) + 1;
-                constexpr uint32_t k_unset =
-                    0xffffffffu;  // no surface: that would be a leaf with all bits set
-                words.assign(size_t(side) * side, k_unset);
                 for (uint32_t v = level.first_vertex; v < level.first_vertex + level.vertex_count; ++v) {
                     uint32_t sample = mesh.vertex_samples[v];
-                    uint32_t column = sample % field.columns - origin % field.columns;
-                    uint32_t row = sample / field.columns - origin / field.columns;
-                    uint32_t& word = words[size_t(row >> shift) * side + (column >> shift)];
-                    if (word == k_unset) {
-                        Mean mean = mean_around(field, ground, sample, 1u << shift);
-                        Surface surface{normalize_or(mean.normal, vec3(0, 1, 0)), mean.color, mean.light,
-                                        false};
-                        word = encode_surface(surface, mix_bits(sample + mix_bits(shift + 1u)));
-                    }
-                    mesh.vertices[v].surface = word;
+                    uint32_t row = (sample / field.columns - row_first) >> shift;
+                    mesh.vertices[v].surface =
+                        words[size_t(row) * across + ((sample % field.columns - column_first) >> shift)];
                 }
             }
         }

@@ -65,7 +65,6 @@ TEST_F(Commands, sections_are_timed_by_name) {
             EXPECT_STREQ(sections[1].name, "empty");
             EXPECT_STREQ(sections[2].name, "last");
             EXPECT_GT(sections[0].ms, 0.0);
-            EXPECT_LT(sections[1].ms, sections[0].ms);
             EXPECT_NEAR(frame->timestamps->total_ms(), sections[0].ms + sections[1].ms + sections[2].ms,
                         1e-9);
         }

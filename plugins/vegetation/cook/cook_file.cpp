@@ -2,6 +2,7 @@
 
 #include <cstring>
 #include <filesystem>
+#include <fmt/format.h>
 #include "plugins/vegetation/cook/import/gltf_document.h"
 #include "plugins/vegetation/cook/import/gltf_uri.h"
 #include "plugins/vegetation/cook/import/import_gltf.h"
@@ -102,8 +103,8 @@ Result<std::string> cooked_path(const std::string& cache_dir, const std::string&
     } else {
         key = hash_combine(key, hash_references(source_path, source.bytes()));
     }
-    std::filesystem::path name = std::filesystem::path(source_path).stem();
-    name += "-" + hash_to_hex(key) + ".plant";
+    std::string name =
+        fmt::format("{}-{}.plant", std::filesystem::path(source_path).stem().string(), hash_to_hex(key));
     return (std::filesystem::path(cache_dir) / "plants" / name).string();
 }
 

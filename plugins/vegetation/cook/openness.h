@@ -11,7 +11,7 @@ namespace coppice {
 
 class OpennessGrid {
   public:
-    static constexpr int k_side_limit = 48;
+    static constexpr int k_side_limit = 32;  // eight levels of openness need no finer grid
     // Surface area counts once where it is open and half where it is closed (parts_closed, one a part),
     // because light meets the front of a closed surface only. Parallel; the same on any number of threads.
     OpennessGrid(std::span<const PartDescription> parts, const std::vector<bool>& parts_closed);

@@ -40,16 +40,18 @@ std::vector<uint32_t> make_prefix_order(uint32_t count, PrefixOrder order, uint6
     std::vector<uint32_t> places;
     places.reserve(count);
     // The list need not have a power of two entries: the sequence runs over the tree's leaves, which are laid
-    // on the list evenly, and a leaf that meets no new entry is passed over. Laid on evenly, not cut off at
-    // the end, so that prefixes of 2^j still meet 2^j equal stretches.
+    // on the list evenly, and a leaf that meets an entry met before is passed over. Laid on evenly, not cut
+    // off at the end, so that prefixes of 2^j still meet 2^j equal stretches.
     int digits = count > 1 ? std::bit_width(count - 1) : 0;
     uint64_t leaf_count = uint64_t(1) << digits;
     uint32_t coins = uint32_t(Random(seed).next_bits());
-    for (uint64_t i = 0; i < leaf_count; ++i) {
+    std::vector<bool> met(count, false);
+    for (uint64_t i = 0; places.size() < count && i < leaf_count; ++i) {
         uint64_t leaf = reverse_digits(scramble_digits(uint32_t(i), coins), digits);
-        uint64_t place = leaf * count >> digits;
-        bool first_of_place = leaf == 0 || (leaf - 1) * count >> digits != place;
-        if (first_of_place) places.push_back(uint32_t(place));
+        uint32_t place = uint32_t(leaf * count >> digits);
+        if (met[place]) continue;
+        met[place] = true;
+        places.push_back(place);
     }
     return places;
 }

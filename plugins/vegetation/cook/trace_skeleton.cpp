@@ -302,10 +302,10 @@ class LevelSetTracer {
                     cross(t, j, end);
                     // Never zero: a cut that only touches corners still has a centre.
                     double w = double(std::sqrt(glm::dot(end[1] - end[0], end[1] - end[0]))) + 1e-12;
-                    visit(t, j, find_root(crossing_parent_, piece_of(t, j)), (end[0] + end[1]) * 0.5f, w);
+                    visit(t, j, find_root(crossing_parent_, piece_of(t, j)), end, w);
                 }
         };
-        for_each_crossing([&](uint32_t t, int, uint32_t root, vec3 middle, double w) {
+        for_each_crossing([&](uint32_t t, int, uint32_t root, const vec3 end[2], double w) {
             if (node_of[root] == k_none) {
                 node_of[root] = uint32_t(weight.size());
                 weight.push_back(0.0);
@@ -315,7 +315,7 @@ class LevelSetTracer {
             }
             uint32_t n = node_of[root];
             weight[n] += w;
-            position[n] += dvec3(middle) * w;
+            position[n] += (dvec3(end[0]) + dvec3(end[1])) * (0.5 * w);
             for (uint32_t k = 0; k < 3; ++k) color[n] += dvec3(c_.vertex_color[3 * t + k]) * (w / 3.0);
         });
         for (size_t n = 0; n < weight.size(); ++n)
@@ -327,10 +327,12 @@ class LevelSetTracer {
             auto operator<=>(const Bound&) const = default;
         };
         std::vector<Bound> bounds;
-        for_each_crossing([&](uint32_t t, int j, uint32_t root, vec3 middle, double w) {
+        for_each_crossing([&](uint32_t t, int j, uint32_t root, const vec3 end[2], double w) {
             uint32_t n = node_of[root];
-            vec3 out = middle - nodes_[n].position;
-            radius[n] += w * double(std::sqrt(glm::dot(out, out)));
+            for (int side = 0; side < 2; ++side) {
+                vec3 out = end[side] - nodes_[n].position;
+                radius[n] += 0.5 * w * double(std::sqrt(glm::dot(out, out)));
+            }
             bounds.push_back({find_root(piece_parent_, piece_of(t, j - 1)), 1, n});
             bounds.push_back({find_root(piece_parent_, piece_of(t, j)), 0, n});
         });

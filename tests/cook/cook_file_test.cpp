@@ -1,0 +1,148 @@
+#include "plugins/vegetation/cook/cook_file.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+#include <filesystem>
+#include "plugins/vegetation/cook/inspect.h"
+#include "plugins/vegetation/plant/plant.h"
+#include "runtime/core/file.h"
+#include "tests/cook/shapes.h"
+
+namespace coppice {
+namespace {
+
+int g_grown = 0;
+
+// A modeller whose plants have as many leaves as the species' text has characters.
+Result<PlantDescription> grow_leaves(std::string_view json, const std::string& file, uint64_t variation) {
+    ++g_grown;
+    if (json.empty()) return fail(ErrorId::syntax, file, "line 1", "empty", "write a species");
+    PlantDescription plant;
+    plant.name = "leaves";
+    plant.parts.push_back(shapes::leaf_cloud(uint32_t(json.size()), 1, 0.1f, variation));
+    return plant;
+}
+constexpr ModellerInterface k_modeller{sizeof(ModellerInterface), &grow_leaves};
+
+class CookFile : public testing::Test {
+  protected:
+    CookFile()
+        : dir_(std::filesystem::temp_directory_path() / ("coppice_cook_file_" + std::to_string(::getpid()))) {
+        std::filesystem::remove_all(dir_);
+        std::filesystem::create_directories(dir_);
+    }
+    ~CookFile() override { std::filesystem::remove_all(dir_); }
+    std::string write(const std::string& name, std::string_view text) {
+        std::string path = (dir_ / name).string();
+        EXPECT_TRUE(write_text_file(path, text));
+        return path;
+    }
+    Result<std::string> find(const std::string& source, uint64_t variation = 0,
+                             const CookSettings& settings = {}) {
+        return find_or_cook((dir_ / "cache").string(), source, variation, settings, &k_modeller, nullptr);
+    }
+    // One triangle, its buffer in a file of its own.
+    std::string write_triangle(float height_m) {
+        const float positions[] = {0, 0, 0, 1, 0, 0, 0, height_m, 0};
+        EXPECT_TRUE(write_file((dir_ / "triangle.bin").string(), std::as_bytes(std::span(positions))));
+        return write("triangle.gltf", R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+            "nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+            "buffers": [{"uri": "triangle.bin", "byteLength": 36}],
+            "bufferViews": [{"buffer": 0, "byteOffset": 0, "byteLength": 36}],
+            "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+                           "min": [0, 0, 0], "max": [1, 9, 0]}]})");
+    }
+    std::filesystem::path dir_;
+};
+
+TEST_F(CookFile, CooksASpeciesThroughTheModeller) {
+    std::string source = write("a.json", "12345"), out = (dir_ / "a.plant").string();
+    auto cooked = cook_file(source, out, 7, {}, &k_modeller, nullptr);
+    ASSERT_TRUE(cooked) << to_string(cooked.error());
+    auto plant = load_plant(out);
+    ASSERT_TRUE(plant);
+    EXPECT_EQ(plant->name, "leaves");
+    EXPECT_EQ(plant->triangle_vertices.size(), 5u * 6);
+}
+
+TEST_F(CookFile, CooksAGltfFile) {
+    std::string out = (dir_ / "t.plant").string();
+    auto cooked = cook_file(write_triangle(2), out, 0, {}, nullptr, nullptr);
+    ASSERT_TRUE(cooked) << to_string(cooked.error());
+    EXPECT_EQ(load_plant(out)->bounds_plant.size(), vec3(1, 2, 0));
+}
+
+TEST_F(CookFile, SaysWhatIsMissing) {
+    std::string out = (dir_ / "out.plant").string();
+    auto refused = [&](const std::string& source, const ModellerInterface* modeller) {
+        auto cooked = cook_file(source, out, 0, {}, modeller, nullptr);
+        EXPECT_FALSE(cooked) << source;
+        EXPECT_FALSE(std::filesystem::exists(out)) << source;
+        return cooked ? Error{} : cooked.error();
+    };
+    Error without_plugin = refused(write("a.json", "1"), nullptr);
+    EXPECT_EQ(without_plugin.id, ErrorId::name_unknown);
+    EXPECT_NE(without_plugin.fault.find("modeller"), std::string::npos);
+    EXPECT_EQ(refused(write("empty.json", ""), &k_modeller).id, ErrorId::syntax);
+    EXPECT_EQ(refused((dir_ / "none.json").string(), &k_modeller).id, ErrorId::file_missing);
+    EXPECT_EQ(refused((dir_ / "none.glb").string(), &k_modeller).id, ErrorId::file_missing);
+    EXPECT_EQ(refused(write("a.obj", "v 0 0 0"), &k_modeller).id, ErrorId::format_unknown);
+    Error flat = refused(write_triangle(0), nullptr);
+    EXPECT_EQ(flat.id, ErrorId::value_out_of_range);
+    EXPECT_EQ(flat.file, (dir_ / "triangle.gltf").string());
+}
+
+TEST_F(CookFile, AFailedCookLeavesTheOldFile) {
+    std::string out = write("old.plant", "what was there");
+    EXPECT_FALSE(cook_file(write_triangle(0), out, 0, {}, nullptr, nullptr));
+    EXPECT_EQ(*read_text_file(out), "what was there");
+}
+
+TEST_F(CookFile, TheCacheCooksOnce) {
+    std::string source = write("a.json", "12345");
+    g_grown = 0;
+    auto first = find(source), second = find(source);
+    ASSERT_TRUE(first && second);
+    EXPECT_EQ(*first, *second);
+    EXPECT_EQ(g_grown, 1);
+    EXPECT_TRUE(load_plant(*first));
+}
+
+TEST_F(CookFile, TheCacheFollowsSourceVariationSettingsAndReferences) {
+    std::string source = write("a.json", "12345");
+    std::string before = *find(source);
+    EXPECT_NE(*find(source, 1), before);
+    CookSettings shuffled;
+    shuffled.order = PrefixOrder::shuffled;
+    EXPECT_NE(*find(source, 0, shuffled), before);
+    write("a.json", "1234567");
+    EXPECT_NE(*find(source), before);
+    EXPECT_EQ(load_plant(*find(source))->triangle_vertices.size(), 7u * 6);
+
+    std::string triangle = write_triangle(2), of_two = *find(triangle);
+    write_triangle(3);  // the same .gltf, another .bin
+    EXPECT_NE(*find(triangle), of_two);
+    EXPECT_NEAR(load_plant(*find(triangle))->bounds_plant.size().y, 3.0f, 0.2f);
+}
+
+TEST_F(CookFile, TheCacheReplacesWhatIsBroken) {
+    std::string source = write("a.json", "12345");
+    std::string path = *find(source);
+    std::filesystem::resize_file(path, 200);
+    EXPECT_FALSE(load_plant(path));
+    EXPECT_EQ(*find(source), path);
+    EXPECT_TRUE(load_plant(path));
+}
+
+TEST_F(CookFile, InspectShowsWhatIsInside) {
+    auto plant = load_plant(*find(write("a.json", "12345")));
+    ASSERT_TRUE(plant);
+    std::string table = inspect_plant(*plant), json = inspect_plant_json(*plant);
+    for (const char* word : {"leaves", "leaf", "points", "10", "20"})
+        EXPECT_NE(table.find(word), std::string::npos) << word;
+    EXPECT_NE(json.find("\"triangles\": 10"), std::string::npos);
+    EXPECT_NE(json.find("\"area_m2\""), std::string::npos);
+}
+
+}  // namespace
+}  // namespace coppice

@@ -10,11 +10,14 @@ TEST(Words, RuntimeNeverSpeaksOfWhatGrows) {
     ASSERT_FALSE(files.empty());
     for (const SourceFile& file : files) {
         std::string text = file.text;
-        std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+        std::transform(text.begin(), text.end(), text.begin(),
+                       [](unsigned char c) { return std::tolower(c); });
         for (const char* word : {"plant", "leaf", "foliage", "vegetation"}) {
             const size_t at = text.find(word);
-            EXPECT_EQ(at, std::string::npos) << file.path << ":" << std::count(text.begin(), text.begin() + long(std::min(at, text.size())), '\n') + 1
-                                             << " says '" << word << "'";
+            EXPECT_EQ(at, std::string::npos)
+                << file.path << ":"
+                << std::count(text.begin(), text.begin() + long(std::min(at, text.size())), '\n') + 1
+                << " says '" << word << "'";
         }
     }
 }

@@ -1,4 +1,5 @@
-// What a user meets who mistypes: one line that says what is wrong and what would be right, and the exit code.
+// What a user meets who mistypes: one line that says what is wrong and what would be right, and the exit
+// code.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -8,7 +9,9 @@
 
 namespace {
 
-void write(const std::string& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
+void write(const std::string& path, const std::string& text) {
+    std::ofstream(path, std::ios::binary) << text;
+}
 
 // One line on standard error, from us, that has `word` in it.
 void expect_failure(const ProgramResult& result, int exit_code, const std::string& word) {
@@ -65,7 +68,8 @@ TEST(CommandLine, AMissingFileIsBadInput) {
     expect_failure(run_coppice({"inspect", folder + "/none.plant"}), 2, folder + "/none.plant");
     expect_failure(run_coppice({"cook", folder + "/none.glb", "-o", folder + "/a.plant"}), 2, "none.glb");
     expect_failure(run_coppice({"cook", folder + "/none.json", "-o", folder + "/a.plant"}), 2, "none.json");
-    expect_failure(run_coppice({"play", folder + "/none.eco.json", "--headless", "64x64"}), 2, "none.eco.json");
+    expect_failure(run_coppice({"play", folder + "/none.eco.json", "--headless", "64x64"}), 2,
+                   "none.eco.json");
     EXPECT_FALSE(std::filesystem::exists(folder + "/a.plant"));
 }
 
@@ -80,7 +84,8 @@ TEST(CommandLine, MalformedJsonIsBadInputWithItsPlace) {
 
 TEST(CommandLine, AFileOfAnotherKindIsBadInput) {
     const std::string folder = fresh_folder();
-    write(folder + "/text.plant", "This is no packed plant, and never was one. It is only long enough to be read.\n");
+    write(folder + "/text.plant",
+          "This is no packed plant, and never was one. It is only long enough to be read.\n");
     expect_failure(run_coppice({"inspect", folder + "/text.plant"}), 2, "text.plant");
     write(folder + "/text.glb", "This is no glTF.\n");
     expect_failure(run_coppice({"cook", folder + "/text.glb", "-o", folder + "/a.plant"}), 2, "text.glb");
@@ -93,7 +98,8 @@ TEST(CommandLine, APictureSizeThatCannotBeMeantIsAUsageError) {
 }
 
 TEST(CommandLine, PicturesThatCannotBeMeantAreAUsageError) {
-    expect_failure(run_coppice({"play", "x.eco.json", "--headless", "64x64", "--pictures", "1,two,3"}), 2, "'two'");
+    expect_failure(run_coppice({"play", "x.eco.json", "--headless", "64x64", "--pictures", "1,two,3"}), 2,
+                   "'two'");
 }
 
 TEST(CommandLine, WithoutADisplayPlaySaysHowToGoOn) {
@@ -106,16 +112,16 @@ TEST(CommandLine, APluginThatIsNoneIsNamed) {
     const std::string folder = fresh_folder();
     write(folder + "/x.eco.json", "{}");
     write(folder + "/terrain.so", "not a shared module");
-    const ProgramResult result =
-        run_coppice({"play", folder + "/x.eco.json", "--headless", "64x64"}, {"COPPICE_PLUGIN_PATH=" + folder});
+    const ProgramResult result = run_coppice({"play", folder + "/x.eco.json", "--headless", "64x64"},
+                                             {"COPPICE_PLUGIN_PATH=" + folder});
     expect_failure(result, 2, folder + "/terrain.so");
 }
 
 TEST(CommandLine, AFolderThatCannotBeWrittenFailsBeforeTheWork) {
     const std::string folder = fresh_folder();
     write(folder + "/file", "in the way");
-    expect_failure(run_coppice({"play", "x.eco.json", "--headless", "64x64", "--out", folder + "/file/out"}), 1,
-                   "--out");
+    expect_failure(run_coppice({"play", "x.eco.json", "--headless", "64x64", "--out", folder + "/file/out"}),
+                   1, "--out");
 }
 
 TEST(CommandLine, ACookThatCannotWriteSaysSo) {

@@ -20,26 +20,27 @@ std::string read_file(const std::string& path) {
 // Nine daisies on a flat meadow, seen from 3 m while moving 1 m to the side in one second.
 std::string write_scene(const std::string& folder) {
     const std::string daisy = std::string(COPPICE_SOURCE_DIR) + "/content/species/daisy.json";
-    const json scene{
-        {"name", "test meadow"},
-        {"plants", {{"daisy", {{"source", daisy}, {"height_m", 0.2}}}}},
-        {"terrain", {{"flat", {{"size_m", 32}, {"cell_m", 4}}}}},
-        {"placements",
-         {{{"scatter",
-            {{"plant", "daisy"},
-             {"grid", {{"spacing_m", 0.5}, {"jitter_m", 0.1}, {"columns", 3}, {"rows", 3}}},
-             {"seed", 1}}}}}},
-        {"camera_path",
-         {{{"time_s", 0}, {"at", {0, 0.8, 3}}, {"pitch_deg", -12}, {"fov_deg", 60}},
-          {{"time_s", 1}, {"at", {1, 0.8, 3}}, {"pitch_deg", -12}, {"fov_deg", 60}}}}};
+    const json scene{{"name", "test meadow"},
+                     {"plants", {{"daisy", {{"source", daisy}, {"height_m", 0.2}}}}},
+                     {"terrain", {{"flat", {{"size_m", 32}, {"cell_m", 4}}}}},
+                     {"placements",
+                      {{{"scatter",
+                         {{"plant", "daisy"},
+                          {"grid", {{"spacing_m", 0.5}, {"jitter_m", 0.1}, {"columns", 3}, {"rows", 3}}},
+                          {"seed", 1}}}}}},
+                     {"camera_path",
+                      {{{"time_s", 0}, {"at", {0, 0.8, 3}}, {"pitch_deg", -12}, {"fov_deg", 60}},
+                       {{"time_s", 1}, {"at", {1, 0.8, 3}}, {"pitch_deg", -12}, {"fov_deg", 60}}}}};
     const std::string path = folder + "/meadow.eco.json";
     std::ofstream(path) << scene.dump(2);
     return path;
 }
 
-std::vector<std::string> play(const std::string& scene, const std::string& out, std::vector<std::string> more = {}) {
-    std::vector<std::string> words{"play",  scene,    "--headless", "96x64",      "--out", out,      "--fps",
-                                   "8",     "--cache", out + "_cache", "--warmup", "1",     "--pictures", "0,8"};
+std::vector<std::string> play(const std::string& scene, const std::string& out,
+                              std::vector<std::string> more = {}) {
+    std::vector<std::string> words{"play",     scene,   "--headless", "96x64",   "--out",
+                                   out,        "--fps", "8",          "--cache", out + "_cache",
+                                   "--warmup", "1",     "--pictures", "0,8"};
     words.insert(words.end(), more.begin(), more.end());
     return words;
 }
@@ -59,7 +60,8 @@ TEST(Play, LeavesPicturesTablesAndAPage) {
     ASSERT_EQ(result.exit_code, 0) << result.err;
 
     const std::string csv = read_file(out + "/frames.csv");
-    EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 9) << "a head and the frames 0 to 8 of one second at 8 Hz";
+    EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 9)
+        << "a head and the frames 0 to 8 of one second at 8 Hz";
     EXPECT_TRUE(csv.starts_with("frame,time_s,wall_ms,"));
 
     const json summary = json::parse(read_file(out + "/summary.json"));
@@ -69,7 +71,8 @@ TEST(Play, LeavesPicturesTablesAndAPage) {
     EXPECT_EQ(figure(summary, "dropped_entries"), 0);
     EXPECT_NEAR(figure(summary, "median_hz") * figure(summary, "median_ms"), 1000.0, 0.01);
     for (const json& one : summary.at("figures"))
-        for (const char* key : {"name", "value", "unit", "reach", "holds"}) EXPECT_TRUE(one.contains(key)) << one;
+        for (const char* key : {"name", "value", "unit", "reach", "holds"})
+            EXPECT_TRUE(one.contains(key)) << one;
 
     ASSERT_EQ(summary.at("pictures").size(), 2u);
     EXPECT_NE(summary["pictures"][0]["hash"], summary["pictures"][1]["hash"]) << "the camera moves";
@@ -86,7 +89,8 @@ TEST(Play, DrawsTheSamePicturesEveryTime) {
     const std::string folder = fresh_folder(), scene = write_scene(folder);
     ASSERT_EQ(run_coppice(play(scene, folder + "/a")).exit_code, 0);
     ASSERT_EQ(run_coppice(play(scene, folder + "/b")).exit_code, 0);
-    const json a = json::parse(read_file(folder + "/a/summary.json")), b = json::parse(read_file(folder + "/b/summary.json"));
+    const json a = json::parse(read_file(folder + "/a/summary.json")),
+               b = json::parse(read_file(folder + "/b/summary.json"));
     EXPECT_EQ(a.at("pictures"), b.at("pictures"));
     EXPECT_EQ(a.at("hashes"), b.at("hashes"));
 }
@@ -118,8 +122,9 @@ TEST(Play, EveryTriangleIsDrawnWhenAsked) {
 
 TEST(Play, WithoutADeviceTheExitCodeSaysSo) {
     const std::string folder = fresh_folder();
-    const ProgramResult result = run_coppice(play(write_scene(folder), folder + "/out"),
-                                             {"VK_ICD_FILENAMES=/nonexistent", "VK_DRIVER_FILES=/nonexistent"});
+    const ProgramResult result =
+        run_coppice(play(write_scene(folder), folder + "/out"),
+                    {"VK_ICD_FILENAMES=/nonexistent", "VK_DRIVER_FILES=/nonexistent"});
     EXPECT_EQ(result.exit_code, 3) << result.err;
     EXPECT_FALSE(std::filesystem::exists(folder + "/out/index.html"));
 }

@@ -27,9 +27,11 @@ std::string fresh_folder() {
     return folder;
 }
 
-ProgramResult run_coppice(const std::vector<std::string>& arguments, const std::vector<std::string>& environment) {
+ProgramResult run_coppice(const std::vector<std::string>& arguments,
+                          const std::vector<std::string>& environment) {
     static int runs = 0;
-    const std::string name = testing::TempDir() + "coppice_" + std::to_string(::getpid()) + "_" + std::to_string(runs++);
+    const std::string name =
+        testing::TempDir() + "coppice_" + std::to_string(::getpid()) + "_" + std::to_string(runs++);
     const std::string out_path = name + ".out", err_path = name + ".err";
     const pid_t child = ::fork();
     if (child == 0) {
@@ -46,8 +48,8 @@ ProgramResult run_coppice(const std::vector<std::string>& arguments, const std::
     }
     int status = 0;
     ::waitpid(child, &status, 0);
-    ProgramResult result{WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), read_file(out_path),
-                         read_file(err_path)};
+    ProgramResult result{WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status),
+                         read_file(out_path), read_file(err_path)};
     std::filesystem::remove(out_path);
     std::filesystem::remove(err_path);
     return result;

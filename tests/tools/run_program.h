@@ -9,7 +9,8 @@ struct ProgramResult {
 };
 
 // environment: "NAME=value", on top of ours.
-ProgramResult run_coppice(const std::vector<std::string>& arguments, const std::vector<std::string>& environment = {});
+ProgramResult run_coppice(const std::vector<std::string>& arguments,
+                          const std::vector<std::string>& environment = {});
 
 // An empty folder of its own for the running test; removed and made again.
 std::string fresh_folder();

@@ -41,13 +41,16 @@ int print_table(const nlohmann::json& result) {
         fmt::print("{:<34}{:>14.6g}  {:<12}{:>12}  {}\n", figure.at("name").get<std::string>(),
                    figure.at("value").get<double>(), figure.at("unit").get<std::string>(),
                    asked ? fmt::format("{:g}", figure.at("reach").get<double>()) : "",
-                   !asked ? "" : holds ? "holds" : "NOT REACHED");
+                   !asked  ? ""
+                   : holds ? "holds"
+                           : "NOT REACHED");
     }
     return missed;
 }
 
 Status run(const BenchCommand& command) {
-    auto bench = std::find_if(benches().begin(), benches().end(), [&](const Bench& b) { return b.name == command.name; });
+    auto bench = std::find_if(benches().begin(), benches().end(),
+                              [&](const Bench& b) { return b.name == command.name; });
     if (bench == benches().end()) {
         std::vector<std::string> names;
         for (const Bench& known : benches()) names.emplace_back(known.name);
@@ -58,8 +61,8 @@ Status run(const BenchCommand& command) {
     const int missed = print_table(result);
     if (!command.json_file.empty()) COPPICE_CHECK(write_text_file(command.json_file, result.dump(2) + "\n"));
     if (command.strict && missed > 0)
-        return fail(ErrorId::regressed, "", "bench " + command.name, fmt::format("{} figures do not hold", missed),
-                    "see the table");
+        return fail(ErrorId::regressed, "", "bench " + command.name,
+                    fmt::format("{} figures do not hold", missed), "see the table");
     return {};
 }
 
@@ -86,7 +89,8 @@ void add_bench(CLI::App& app, Command& chosen) {
     bench->add_option("--device", command->settings.device, "Vulkan device, by index or part of its name");
     bench->add_option("--content", command->settings.content, "Folder of scenes and species")
         ->default_val("content");
-    bench->add_option("--cache", command->settings.cache_dir, "Folder of cooked plants. Default: ~/.cache/coppice");
+    bench->add_option("--cache", command->settings.cache_dir,
+                      "Folder of cooked plants. Default: ~/.cache/coppice");
     bench->add_flag("--strict", command->strict, "Exit with 1 where a figure does not hold");
     bench->callback([command, &chosen] { chosen = [command] { return run(*command); }; });
 }

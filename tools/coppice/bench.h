@@ -1,4 +1,5 @@
-// The benchmarks of `coppice bench`: each gives {"name", "figures": [{name, value, unit, reach, holds}], ...}.
+// The benchmarks of `coppice bench`: each gives {"name", "figures": [{name, value, unit, reach, holds}],
+// ...}.
 #pragma once
 #include <functional>
 #include <string>

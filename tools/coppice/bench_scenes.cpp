@@ -28,7 +28,8 @@ Result<PlayRecord> fly_scene(const BenchSettings& settings, const std::string& s
 }
 
 double figure_value(const std::vector<Figure>& figures, const std::string& name) {
-    auto found = std::find_if(figures.begin(), figures.end(), [&](const Figure& f) { return f.name == name; });
+    auto found =
+        std::find_if(figures.begin(), figures.end(), [&](const Figure& f) { return f.name == name; });
     return found == figures.end() ? 0.0 : found->value;
 }
 
@@ -73,7 +74,8 @@ Result<nlohmann::json> bench_stand(const BenchSettings& settings) {
         uint32_t compared_frames;
         double peer_db;
     };
-    constexpr Stand k_stands[] = {{"stand_640", 356.0, 4, 25.5}, {"stand_5000", 409.0, 2, 24.4}, {"stand_50000", 490.0, 0, 0.0}};
+    constexpr Stand k_stands[] = {
+        {"stand_640", 356.0, 4, 25.5}, {"stand_5000", 409.0, 2, 24.4}, {"stand_50000", 490.0, 0, 0.0}};
     std::vector<Figure> figures;
     PlayRecord last;
     for (const Stand& stand : k_stands) {
@@ -85,13 +87,14 @@ Result<nlohmann::json> bench_stand(const BenchSettings& settings) {
         double sum_ms = 0.0;
         for (const FrameRecord& frame : last.frames) sum_ms += frame.wall_ms;
         const std::string prefix = std::string(stand.scene) + "_";
-        figures.push_back({prefix + "mean_ms", sum_ms / double(last.frames.size()), "ms", stand.peer_ms / 10.0,
-                           Reach::at_most});
+        figures.push_back({prefix + "mean_ms", sum_ms / double(last.frames.size()), "ms",
+                           stand.peer_ms / 10.0, Reach::at_most});
         figures.push_back({prefix + "median_ms", figure_value(all, "median_ms"), "ms", {}});
         figures.push_back({prefix + "sample_distance_px", figure_value(all, "sample_distance_px"), "px", {}});
         figures.push_back({prefix + "vertices", figure_value(all, "vertices"), "per frame", {}});
         if (options.compare_full) {
-            figures.push_back({prefix + "psnr_to_full_db", figure_value(all, "psnr_to_full_db"), "dB", stand.peer_db});
+            figures.push_back(
+                {prefix + "psnr_to_full_db", figure_value(all, "psnr_to_full_db"), "dB", stand.peer_db});
             figures.push_back({prefix + "full_over_lod", figure_value(all, "full_over_lod"), "times", {}});
         }
     }

@@ -1,4 +1,5 @@
-// A subcommand: its options go into the program's command line, its work into `chosen` when the user names it.
+// A subcommand: its options go into the program's command line, its work into `chosen` when the user names
+// it.
 #pragma once
 #include <functional>
 #include <CLI/CLI.hpp>

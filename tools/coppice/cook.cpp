@@ -38,11 +38,12 @@ Status run(const CookCommand& command) {
         images = registry.find<ImagesInterface>(k_images_interface, k_images_version);
 
     Stopwatch clock;
-    COPPICE_CHECK(cook_file(command.source, command.out, command.variation, command.settings, modeller, images));
+    COPPICE_CHECK(
+        cook_file(command.source, command.out, command.variation, command.settings, modeller, images));
     const double cook_s = clock.ms() * 1e-3;
     COPPICE_TRY(const Plant plant, load_plant(command.out));
-    fmt::print("{}{}: {:.1f} KiB in {:.2f} s, {:.2f} M triangles a second\n", inspect_plant(plant), command.out,
-               double(plant.file->bytes().size()) / 1024.0, cook_s,
+    fmt::print("{}{}: {:.1f} KiB in {:.2f} s, {:.2f} M triangles a second\n", inspect_plant(plant),
+               command.out, double(plant.file->bytes().size()) / 1024.0, cook_s,
                double(plant.triangle_vertices.size() / 3) * 1e-6 / cook_s);
     return {};
 }
@@ -56,11 +57,13 @@ void add_cook(CLI::App& app, Command& chosen) {
     cook->footer(k_examples);
     cook->add_option("plant", command->source, "*.json (species), *.glb or *.gltf")->required();
     cook->add_option("-o,--output", command->out, "The packed plant, *.plant")->required();
-    cook->add_option("--variation", command->variation, "Which individual of a species")->capture_default_str();
+    cook->add_option("--variation", command->variation, "Which individual of a species")
+        ->capture_default_str();
     const std::map<std::string, PointSampler> samplers{{"automatic", PointSampler::automatic},
                                                        {"area", PointSampler::area},
                                                        {"two-per-triangle", PointSampler::two_per_triangle}};
-    cook->add_option("--sampler", settings.sampler, "How points are laid out: automatic, area or two-per-triangle")
+    cook->add_option("--sampler", settings.sampler,
+                     "How points are laid out: automatic, area or two-per-triangle")
         ->transform(CLI::CheckedTransformer(samplers).description(""))
         ->default_str("automatic");
     const std::map<std::string, PrefixOrder> orders{{"progressive", PrefixOrder::progressive},
@@ -68,7 +71,8 @@ void add_cook(CLI::App& app, Command& chosen) {
     cook->add_option("--order", settings.order, "progressive: every prefix is well spread; or shuffled")
         ->transform(CLI::CheckedTransformer(orders).description(""))
         ->default_str("progressive");
-    cook->add_option("--points-per-triangle", settings.points_per_triangle, "Points stored, of the sampler area")
+    cook->add_option("--points-per-triangle", settings.points_per_triangle,
+                     "Points stored, of the sampler area")
         ->check(CLI::Range(0.01, 64.0))
         ->capture_default_str();
     cook->add_option("--seed", settings.seed, "Of the order and the points")->capture_default_str();

@@ -1,4 +1,5 @@
-// One measured figure, with what it is to reach: the entries of every benchmark's list `figures` (DESIGN section 8).
+// One measured figure, with what it is to reach: the entries of every benchmark's list `figures` (DESIGN
+// section 8).
 #pragma once
 #include <optional>
 #include <string>
@@ -18,12 +19,16 @@ struct Figure {
 
 inline bool holds(const Figure& figure) {
     if (!figure.reach) return true;
-    return figure.direction == Reach::at_least ? figure.value >= *figure.reach : figure.value <= *figure.reach;
+    return figure.direction == Reach::at_least ? figure.value >= *figure.reach
+                                               : figure.value <= *figure.reach;
 }
 
 // {name, value, unit, reach, holds}; the last two are null where nothing is asked.
 inline nlohmann::json to_json(const Figure& figure) {
-    nlohmann::json json{{"name", figure.name}, {"value", figure.value}, {"unit", figure.unit}, {"reach", nullptr},
+    nlohmann::json json{{"name", figure.name},
+                        {"value", figure.value},
+                        {"unit", figure.unit},
+                        {"reach", nullptr},
                         {"holds", nullptr}};
     if (figure.reach) {
         json["reach"] = *figure.reach;

@@ -25,11 +25,13 @@ std::string find_value(const char* file, const std::string& key) {
 Machine describe_machine() {
     Machine machine{};
     machine.system = find_value("/etc/os-release", "PRETTY_NAME");
-    if (utsname names{}; ::uname(&names) == 0) machine.system += std::string(", ") + names.sysname + " " + names.release;
+    if (utsname names{}; ::uname(&names) == 0)
+        machine.system += std::string(", ") + names.sysname + " " + names.release;
     machine.processor = find_value("/proc/cpuinfo", "model name");
     machine.threads = std::thread::hardware_concurrency();
     long pages = ::sysconf(_SC_PHYS_PAGES), page_bytes = ::sysconf(_SC_PAGE_SIZE);
-    if (pages > 0 && page_bytes > 0) machine.memory_gib = double(pages) * double(page_bytes) / double(1u << 30);
+    if (pages > 0 && page_bytes > 0)
+        machine.memory_gib = double(pages) * double(page_bytes) / double(1u << 30);
 #if defined(__clang__)
     machine.compiler = "clang " __clang_version__;
 #else

@@ -1,4 +1,5 @@
-// The `coppice` program: one file a subcommand. Whatever goes wrong is one line on standard error and an exit code.
+// The `coppice` program: one file a subcommand. Whatever goes wrong is one line on standard error and an exit
+// code.
 #include <algorithm>
 #include <cstdio>
 #include <exception>
@@ -59,7 +60,8 @@ int run(int argc, char** argv) {
     const std::string remedy = fmt::format("use one of: {}; or --help", fmt::join(names, ", "));
     if (first.empty()) return report_error({ErrorId::usage, "", "", "no subcommand", remedy});
     if (!is_option && std::find(names.begin(), names.end(), first) == names.end())
-        return report_error({ErrorId::name_unknown, "", "", "no subcommand is called '" + first + "'", remedy});
+        return report_error(
+            {ErrorId::name_unknown, "", "", "no subcommand is called '" + first + "'", remedy});
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

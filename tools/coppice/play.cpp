@@ -70,8 +70,9 @@ Status run(PlayCommand command) {
         fmt::print("{0}/index.html  {0}/summary.json  {0}/frames.csv\n", options.out);
     }
     if (record.validation_messages > 0)
-        return fail(ErrorId::regressed, "", "", fmt::format("{} messages of the validation layers",
-                                                            record.validation_messages), "there must be none");
+        return fail(ErrorId::regressed, "", "",
+                    fmt::format("{} messages of the validation layers", record.validation_messages),
+                    "there must be none");
     return {};
 }
 
@@ -84,9 +85,11 @@ void add_play(CLI::App& app, Command& chosen) {
     play->footer(k_examples);
     play->add_option("scene", options.scene, "The scene, *.eco.json")->required();
     play->add_option("--path", options.path, "Camera path, *.json, in place of the scene's own");
-    play->add_option("--headless", command->headless, "Size of the picture, as 1280x720; no window is opened");
+    play->add_option("--headless", command->headless,
+                     "Size of the picture, as 1280x720; no window is opened");
     play->add_option("--out", options.out, "Folder for pictures, frames.csv, summary.json and index.html");
-    play->add_option("--frames", options.frames, "So many frames from the start of the path; 0: the whole path")
+    play->add_option("--frames", options.frames,
+                     "So many frames from the start of the path; 0: the whole path")
         ->check(CLI::Range(0, 1'000'000))
         ->capture_default_str();
     play->add_option("--fps", options.fps, "Frames a second of flight; a fixed step")
@@ -100,7 +103,8 @@ void add_play(CLI::App& app, Command& chosen) {
     play->add_option("--sample-distance", command->sample_distance_px,
                      "d' in pixels; smaller draws more. Default: what the scene recommends")
         ->check(CLI::Range(0.01, 1000.0));
-    play->add_option("--splat-factor", options.settings.splat_factor, "c_p: points for each square of side d'")
+    play->add_option("--splat-factor", options.settings.splat_factor,
+                     "c_p: points for each square of side d'")
         ->check(CLI::Range(0.01, 100.0))
         ->capture_default_str();
     const std::map<std::string, ProjectionMode> modes{{"printed", ProjectionMode::printed},
@@ -112,7 +116,8 @@ void add_play(CLI::App& app, Command& chosen) {
         ->default_str("measured");
     const std::map<std::string, RepresentationView> views{{"lit", RepresentationView::lit},
                                                           {"kinds", RepresentationView::kinds}};
-    play->add_option("--view", options.settings.view, "lit, or kinds: triangles green, lines blue, points red")
+    play->add_option("--view", options.settings.view,
+                     "lit, or kinds: triangles green, lines blue, points red")
         ->transform(CLI::CheckedTransformer(views).description(""))
         ->default_str("lit");
     play->add_flag("--full", command->full, "Every triangle: no level of detail");
@@ -122,7 +127,8 @@ void add_play(CLI::App& app, Command& chosen) {
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
     play->add_option("--device", options.device, "Vulkan device, by index or part of its name");
-    play->add_flag("--validation", options.validation, "Vulkan's validation layers; any message fails the run");
+    play->add_flag("--validation", options.validation,
+                   "Vulkan's validation layers; any message fails the run");
     play->add_option("--cache", options.cache_dir, "Folder of cooked plants. Default: ~/.cache/coppice");
     play->callback([command, &chosen] { chosen = [command] { return run(*command); }; });
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-
 #include "plugins/modeller/modeller.h"
 #include "plugins/vegetation/cook/cook_file.h"
 #include "plugins/vegetation/eco/camera_path.h"
@@ -44,8 +43,9 @@ Result<std::vector<Plant>> PlayHost::load_plants(const PlayOptions& options) {
     const auto* modeller = registry.find<ModellerInterface>(k_modeller_interface, k_modeller_version);
     const std::string cache_dir = options.cache_dir.empty() ? default_cache_dir() : options.cache_dir;
     const size_t count = scene.models.size();
-    const bool textured = std::any_of(scene.models.begin(), scene.models.end(),
-                                      [](const SceneModel& model) { return !model.source_path.ends_with(".json"); });
+    const bool textured = std::any_of(scene.models.begin(), scene.models.end(), [](const SceneModel& model) {
+        return !model.source_path.ends_with(".json");
+    });
     const ImagesInterface* images = textured ? find_images() : nullptr;
     std::vector<Result<std::string>> paths(count);
     Stopwatch cook_clock;
@@ -54,7 +54,8 @@ Result<std::vector<Plant>> PlayHost::load_plants(const PlayOptions& options) {
         parallel_for(count, 1, [&](size_t first, size_t last) {
             for (size_t i = first; i < last; ++i) {
                 const SceneModel& model = scene.models[i];
-                paths[i] = find_or_cook(cache_dir, model.source_path, model.variation, CookSettings{}, modeller, images);
+                paths[i] = find_or_cook(cache_dir, model.source_path, model.variation, CookSettings{},
+                                        modeller, images);
                 progress.advance();
             }
         });
@@ -104,7 +105,8 @@ Result<std::unique_ptr<PlayHost>> PlayHost::create(const PlayOptions& options,
     host->load.device_ms = device_clock.ms();
 
     Stopwatch upload_clock;
-    const auto* vegetation = host->registry.find<VegetationInterface>(k_vegetation_interface, k_vegetation_version);
+    const auto* vegetation =
+        host->registry.find<VegetationInterface>(k_vegetation_interface, k_vegetation_version);
     if (!vegetation)
         return fail(ErrorId::name_unknown, "", "plugin vegetation", "does not provide its interface",
                     "install the plugin of this version");
@@ -155,7 +157,8 @@ Status PlayHost::finish_times() {
 
 Result<Picture> PlayHost::read_picture() const {
     Picture picture{width, height, std::vector<uint8_t>(size_t(width) * height * 4)};
-    COPPICE_CHECK(gpu::read_now(*device, vegetation->color(), 0, std::as_writable_bytes(std::span(picture.rgba))));
+    COPPICE_CHECK(
+        gpu::read_now(*device, vegetation->color(), 0, std::as_writable_bytes(std::span(picture.rgba))));
     return picture;
 }
 

@@ -1,5 +1,5 @@
-// What any program has that embeds the vegetation plugin: plugins, a scene with its plants, a device, a world, a
-// schedule, a frame graph and a ring of command buffers. One thread at a time.
+// What any program has that embeds the vegetation plugin: plugins, a scene with its plants, a device, a
+// world, a schedule, a frame graph and a ring of command buffers. One thread at a time.
 #pragma once
 #include <chrono>
 #include <functional>
@@ -34,8 +34,8 @@ class Stopwatch {
 
 class PlayHost {
   public:
-    // Loads everything the options name; plants that are not in the cache are cooked first. present_extensions: of
-    // the instance, where the pictures go to a window.
+    // Loads everything the options name; plants that are not in the cache are cooked first.
+    // present_extensions: of the instance, where the pictures go to a window.
     static Result<std::unique_ptr<PlayHost>> create(const PlayOptions& options,
                                                     const std::vector<const char*>& present_extensions = {});
     ~PlayHost();
@@ -62,7 +62,8 @@ class PlayHost {
     // Of the last frame drawn.
     Result<Picture> read_picture() const;
     Status resize(uint32_t width_px, uint32_t height_px);
-    // Loaded when first asked for, because it brings a hundred libraries along. nullptr where it is not installed.
+    // Loaded when first asked for, because it brings a hundred libraries along. nullptr where it is not
+    // installed.
     const ImagesInterface* find_images();
 
     // In the order of what needs what, destroyed from the last to the first.

@@ -32,8 +32,10 @@ double psnr_db(const Picture& picture, const Picture& reference) {
 // images may be null: PPM then.
 Result<PlayPicture> keep_picture(const ImagesInterface* images, const PlayOptions& options, uint32_t frame,
                                  const Picture& picture) {
-    PlayPicture kept{frame, double(frame) / options.fps,
-                     fmt::format("frame_{:04}.{}", frame, images ? "png" : "ppm"), {},
+    PlayPicture kept{frame,
+                     double(frame) / options.fps,
+                     fmt::format("frame_{:04}.{}", frame, images ? "png" : "ppm"),
+                     {},
                      hash_bytes(picture.rgba.data(), picture.rgba.size())};
     const std::string path = options.out + "/" + kept.file;
     if (images) {
@@ -76,7 +78,8 @@ Result<ComparedFrame> compare_with_full(PlayHost& host, const Camera& camera, co
     ComparedFrame compared{frame, lod_ms, 0.0, host.vegetation->report().vertices, 0, 0.0};
     FrameSettings full = settings;
     full.level_of_detail = false;
-    for (uint32_t tries = 0;; ++tries) {  // the first draws may find the work list too short, and make it grow
+    for (uint32_t tries = 0;;
+         ++tries) {  // the first draws may find the work list too short, and make it grow
         COPPICE_TRY(PlayHost::FrameTimes times, host.draw_frame(camera, full));
         compared.full_ms = times.wall_ms;
         const uint64_t dropped = host.vegetation->report().dropped_entries;
@@ -139,7 +142,8 @@ Result<PlayRecord> play_headless(PlayHost& host, const PlayOptions& options) {
     PassTimes pass_times(record);
     host.read_times = [&pass_times](uint32_t slot, auto sections) { pass_times.read(slot, sections); };
     for (uint32_t i = 0; i < options.warmup; ++i) {
-        COPPICE_TRY(PlayHost::FrameTimes times, host.draw_frame(camera_at(host.scene.camera_path, 0.0), settings));
+        COPPICE_TRY(PlayHost::FrameTimes times,
+                    host.draw_frame(camera_at(host.scene.camera_path, 0.0), settings));
         if (i == 0) host.load.first_frame_ms = times.wall_ms;
     }
     record.load = host.load;
@@ -179,7 +183,8 @@ Result<PlayRecord> play_headless(PlayHost& host, const PlayOptions& options) {
 Status write_report(const PlayRecord& record, const std::string& out) {
     COPPICE_CHECK(write_text_file(out + "/frames.csv", frames_csv(record)));
     const auto replace = nlohmann::json::error_handler_t::replace;
-    COPPICE_CHECK(write_text_file(out + "/summary.json", play_summary(record).dump(2, ' ', false, replace) + "\n"));
+    COPPICE_CHECK(
+        write_text_file(out + "/summary.json", play_summary(record).dump(2, ' ', false, replace) + "\n"));
     return write_text_file(out + "/index.html", play_page(record));
 }
 

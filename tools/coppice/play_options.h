@@ -11,21 +11,21 @@ namespace coppice {
 
 struct PlayOptions {
     std::string scene;
-    std::string path;                  // camera path; empty: the scene's own
+    std::string path;  // camera path; empty: the scene's own
     bool headless = false;
     uint32_t width = 1280, height = 720;
-    std::string out;                   // folder; empty: no files
-    uint32_t frames = 0;               // 0: the whole path
-    double fps = 30.0;                 // fixed step: the same frames on every machine
-    uint32_t warmup = 5;               // frames drawn before the first measured one
-    std::string pictures = "4";        // see chosen_frames()
+    std::string out;                          // folder; empty: no files
+    uint32_t frames = 0;                      // 0: the whole path
+    double fps = 30.0;                        // fixed step: the same frames on every machine
+    uint32_t warmup = 5;                      // frames drawn before the first measured one
+    std::string pictures = "4";               // see chosen_frames()
     std::optional<float> sample_distance_px;  // empty: what the scene recommends
     FrameSettings settings;
     bool compare_full = false;
     uint32_t compare_frames = 5;
     std::string device;
     bool validation = false;
-    std::string cache_dir;             // of packed plants; empty: the user's cache folder
+    std::string cache_dir;  // of packed plants; empty: the user's cache folder
 };
 
 // "1280x720". Errors: usage.

@@ -49,7 +49,9 @@ constexpr const char* k_colors[] = {"#28506b", "#3f8f5b", "#8cbf6a", "#e0b64c", 
 
 constexpr uint32_t k_picture_limit = 24;
 
-const PlayPicture& middle_picture(const PlayRecord& record) { return record.pictures[record.pictures.size() / 2]; }
+const PlayPicture& middle_picture(const PlayRecord& record) {
+    return record.pictures[record.pictures.size() / 2];
+}
 
 std::string encode_base64(std::span<const std::byte> bytes) {
     static constexpr char k_digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -69,11 +71,12 @@ std::string card(const std::string& value, const std::string& meaning) {
 }
 
 std::string figure(const PlayPicture& picture, const char* css_class) {
-    const std::string source =
-        picture.png.empty() ? escape_html(picture.file) : "data:image/png;base64," + encode_base64(picture.png);
-    return fmt::format("<figure class=\"{}\"><img src=\"{}\" alt=\"Frame {}\"><figcaption>frame {}, {:.2f} s"
-                       "</figcaption></figure>\n",
-                       css_class, source, picture.frame, picture.frame, picture.time_s);
+    const std::string source = picture.png.empty() ? escape_html(picture.file)
+                                                   : "data:image/png;base64," + encode_base64(picture.png);
+    return fmt::format(
+        "<figure class=\"{}\"><img src=\"{}\" alt=\"Frame {}\"><figcaption>frame {}, {:.2f} s"
+        "</figcaption></figure>\n",
+        css_class, source, picture.frame, picture.frame, picture.time_s);
 }
 
 std::string cards(const PlayRecord& record) {
@@ -88,8 +91,8 @@ std::string cards(const PlayRecord& record) {
     html += card(fmt::format("{:.1f} ms", median_ms),
                  fmt::format("a frame, median: {:.0f} frames a second", 1000.0 / median_ms));
     html += card(fmt::format("{:.1f} ms", quantile(wall, 0.95)), "or less for 95 % of the frames");
-    html += card(short_count(median(vertices)), fmt::format("vertices drawn a frame, for {} triangles in view",
-                                                            short_count(median(full))));
+    html += card(short_count(median(vertices)),
+                 fmt::format("vertices drawn a frame, for {} triangles in view", short_count(median(full))));
     html += card(short_count(double(record.scene_triangles)),
                  fmt::format("triangles in the scene, {} plants", short_count(double(record.plants))));
     if (!record.compared.empty()) {
@@ -127,7 +130,8 @@ std::string time_plot(const PlayRecord& record, const std::vector<double>& time_
 }
 
 std::string count_plot(const PlayRecord& record, const std::vector<double>& time_s) {
-    std::vector<PlotSeries> series{{"points", "#c8553d", {}}, {"lines, two vertices each", "#3d6fa8", {}},
+    std::vector<PlotSeries> series{{"points", "#c8553d", {}},
+                                   {"lines, two vertices each", "#3d6fa8", {}},
                                    {"triangles, three vertices each", "#4f9a5a", {}}};
     for (const FrameRecord& frame : record.frames) {
         series[0].values.push_back(double(frame.report.points));
@@ -140,17 +144,22 @@ std::string count_plot(const PlayRecord& record, const std::vector<double>& time
 std::string compared_table(const PlayRecord& record) {
     if (record.compared.empty()) return {};
     std::string html =
-        "<h2>Against every triangle</h2>\n<p class=\"soft\">The same frames in the same run, once with level of "
-        "detail and once with every triangle in view, one after the other. The last column is how much alike the two "
-        "pictures are (peak signal to noise; more is better).</p>\n<table class=\"numbers\"><tr><th>frame</th>"
-        "<th>level of detail, ms</th><th>every triangle, ms</th><th>ratio</th><th>vertices</th><th>triangles</th>"
+        "<h2>Against every triangle</h2>\n<p class=\"soft\">The same frames in the same run, once with level "
+        "of "
+        "detail and once with every triangle in view, one after the other. The last column is how much alike "
+        "the two "
+        "pictures are (peak signal to noise; more is better).</p>\n<table "
+        "class=\"numbers\"><tr><th>frame</th>"
+        "<th>level of detail, ms</th><th>every triangle, "
+        "ms</th><th>ratio</th><th>vertices</th><th>triangles</th>"
         "<th>dB</th></tr>\n";
     for (const ComparedFrame& frame : record.compared)
-        html += fmt::format("<tr><td>{}</td><td>{:.2f}</td><td>{:.1f}</td><td>{:.1f}</td><td>{}</td><td>{}</td>"
-                            "<td>{:.1f}</td></tr>\n",
-                            frame.frame, frame.lod_ms, frame.full_ms, frame.full_ms / std::max(frame.lod_ms, 1e-6),
-                            short_count(double(frame.lod_vertices)), short_count(double(frame.full_triangles)),
-                            frame.psnr_db);
+        html += fmt::format(
+            "<tr><td>{}</td><td>{:.2f}</td><td>{:.1f}</td><td>{:.1f}</td><td>{}</td><td>{}</td>"
+            "<td>{:.1f}</td></tr>\n",
+            frame.frame, frame.lod_ms, frame.full_ms, frame.full_ms / std::max(frame.lod_ms, 1e-6),
+            short_count(double(frame.lod_vertices)), short_count(double(frame.full_triangles)),
+            frame.psnr_db);
     return html + "</table>\n";
 }
 
@@ -163,7 +172,8 @@ std::string facts_table(const PlayRecord& record) {
     const Machine& machine = record.machine;
     row("device", record.device);
     row("driver", record.driver);
-    row("processor", fmt::format("{}, {} threads, {:.1f} GiB", machine.processor, machine.threads, machine.memory_gib));
+    row("processor",
+        fmt::format("{}, {} threads, {:.1f} GiB", machine.processor, machine.threads, machine.memory_gib));
     row("system", machine.system);
     row("program", fmt::format("Coppice {}, {}, {}", COPPICE_VERSION, machine.build, machine.compiler));
     row("picture", fmt::format("{} x {}", record.width, record.height));
@@ -173,12 +183,12 @@ std::string facts_table(const PlayRecord& record) {
     row("projection", name_of(record.settings.projection));
     row("level of detail", record.settings.level_of_detail ? "on" : "off: every triangle");
     const LoadTimes& load = record.load;
-    row("loading, ms", fmt::format("scene {:.0f}, cooking {:.0f}, plants {:.0f}, device {:.0f}, upload {:.0f}, first "
-                                   "frame {:.0f}",
-                                   load.scene_ms, load.cook_ms, load.plants_ms, load.device_ms, load.upload_ms,
-                                   load.first_frame_ms));
-    if (record.validation)
-        row("validation layers", fmt::format("{} messages", record.validation_messages));
+    row("loading, ms",
+        fmt::format("scene {:.0f}, cooking {:.0f}, plants {:.0f}, device {:.0f}, upload {:.0f}, first "
+                    "frame {:.0f}",
+                    load.scene_ms, load.cook_ms, load.plants_ms, load.device_ms, load.upload_ms,
+                    load.first_frame_ms));
+    if (record.validation) row("validation layers", fmt::format("{} messages", record.validation_messages));
     for (const auto& [name, hash] : record.hashes) row("hash of " + name, hash_to_hex(hash));
     for (const PlayPicture& picture : record.pictures)
         row(fmt::format("hash of picture {}", picture.frame), hash_to_hex(picture.hash));
@@ -193,19 +203,25 @@ std::string play_page(const PlayRecord& record) {
     const std::string name = escape_html(record.scene_name);
     std::string html = fmt::format(
         "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
-        "content=\"width=device-width,initial-scale=1\"><title>{0} - Coppice</title><style>{1}</style></head>\n"
-        "<body><main>\n<h1>{0}</h1>\n<p class=\"soft\">A flight of {2} frames at {3} x {4} pixels, drawn by Coppice "
-        "on {5}. Plants far away are drawn as fewer points and lines, near ones as triangles, so that the picture "
+        "content=\"width=device-width,initial-scale=1\"><title>{0} - "
+        "Coppice</title><style>{1}</style></head>\n"
+        "<body><main>\n<h1>{0}</h1>\n<p class=\"soft\">A flight of {2} frames at {3} x {4} pixels, drawn by "
+        "Coppice "
+        "on {5}. Plants far away are drawn as fewer points and lines, near ones as triangles, so that the "
+        "picture "
         "decides what a frame costs.</p>\n",
         name, k_style, record.frames.size(), record.width, record.height, escape_html(record.device));
     if (!record.pictures.empty()) html += figure(middle_picture(record), "hero");
     html += cards(record);
-    html += "<h2>Time of a frame</h2>\n<p class=\"soft\">From the start of a frame until its picture was complete, "
-            "nothing overlapped; by what the time went into.</p>\n<div class=\"plot\">" +
-            time_plot(record, time_s) + "</div>\n";
-    html += "<h2>What was drawn</h2>\n<p class=\"soft\">Vertices of the plants by kind of primitive.</p>\n"
-            "<div class=\"plot\">" +
-            count_plot(record, time_s) + "</div>\n";
+    html +=
+        "<h2>Time of a frame</h2>\n<p class=\"soft\">From the start of a frame until its picture was "
+        "complete, "
+        "nothing overlapped; by what the time went into.</p>\n<div class=\"plot\">" +
+        time_plot(record, time_s) + "</div>\n";
+    html +=
+        "<h2>What was drawn</h2>\n<p class=\"soft\">Vertices of the plants by kind of primitive.</p>\n"
+        "<div class=\"plot\">" +
+        count_plot(record, time_s) + "</div>\n";
     html += compared_table(record);
     if (record.pictures.size() > 1) {
         html += "<h2>Pictures</h2>\n<div class=\"pictures\">\n";
@@ -216,7 +232,8 @@ std::string play_page(const PlayRecord& record) {
     }
     html += "<h2>Machine, settings, hashes</h2>\n" + facts_table(record);
     html += "<h2>Again</h2>\n<p><code>" + escape_html(record.command) +
-            "</code></p>\n<p class=\"soft\">Every frame's figures are in frames.csv and summary.json beside this page."
+            "</code></p>\n<p class=\"soft\">Every frame's figures are in frames.csv and summary.json beside "
+            "this page."
             "</p>\n</main></body></html>\n";
     return html;
 }

@@ -60,8 +60,8 @@ std::string stacked_plot(const std::vector<double>& all_x, const std::vector<Plo
     };
 
     std::string svg = fmt::format(
-        "<svg viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\" xmlns=\"http://www.w3.org/2000/svg\">\n", k_width,
-        k_height, escape_html(settings.label));
+        "<svg viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\" xmlns=\"http://www.w3.org/2000/svg\">\n",
+        k_width, k_height, escape_html(settings.label));
     const double y_step = tick_step(y_max, 5);
     for (int tick = 0; double(tick) * y_step <= y_max; ++tick) {
         double value = double(tick) * y_step;
@@ -72,7 +72,8 @@ std::string stacked_plot(const std::vector<double>& all_x, const std::vector<Plo
     }
     for (size_t s = 0; s < series.size(); ++s) {
         svg += fmt::format("<path fill=\"{}\" d=\"M", series[s].color);
-        for (size_t i = 0; i < x.size(); ++i) svg += fmt::format("{:.1f},{:.1f} ", at_x(x[i]), at_y(tops[s][i]));
+        for (size_t i = 0; i < x.size(); ++i)
+            svg += fmt::format("{:.1f},{:.1f} ", at_x(x[i]), at_y(tops[s][i]));
         for (size_t i = x.size(); i-- > 0;)
             svg += fmt::format("L{:.1f},{:.1f} ", at_x(x[i]), at_y(s == 0 ? 0.0 : tops[s - 1][i]));
         svg += fmt::format("Z\"><title>{}</title></path>\n", escape_html(series[s].name));
@@ -83,10 +84,11 @@ std::string stacked_plot(const std::vector<double>& all_x, const std::vector<Plo
         svg += fmt::format("<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{:g}</text>\n", at_x(value),
                            k_height - k_bottom + 17, std::round(value * 1e6) / 1e6);
     }
-    svg += fmt::format("<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n", (k_left + k_width) / 2,
-                       k_height - 6, escape_html(settings.x_name));
-    svg += fmt::format("<text transform=\"translate(14,{:.1f}) rotate(-90)\" text-anchor=\"middle\">{}</text>\n",
-                       (k_top + k_height - k_bottom) / 2, escape_html(settings.y_name));
+    svg += fmt::format("<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n",
+                       (k_left + k_width) / 2, k_height - 6, escape_html(settings.x_name));
+    svg +=
+        fmt::format("<text transform=\"translate(14,{:.1f}) rotate(-90)\" text-anchor=\"middle\">{}</text>\n",
+                    (k_top + k_height - k_bottom) / 2, escape_html(settings.y_name));
     if (cut)
         svg += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"end\">peaks up to {} are cut off</text>\n",
                            k_width - k_right, k_top - 2, short_count(highest));
@@ -108,11 +110,20 @@ std::string escape_html(const std::string& text) {
     std::string escaped;
     for (char c : text) {
         switch (c) {
-            case '&': escaped += "&amp;"; break;
-            case '<': escaped += "&lt;"; break;
-            case '>': escaped += "&gt;"; break;
-            case '"': escaped += "&quot;"; break;
-            default: escaped += c;
+            case '&':
+                escaped += "&amp;";
+                break;
+            case '<':
+                escaped += "&lt;";
+                break;
+            case '>':
+                escaped += "&gt;";
+                break;
+            case '"':
+                escaped += "&quot;";
+                break;
+            default:
+                escaped += c;
         }
     }
     return escaped;

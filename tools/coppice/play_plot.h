@@ -17,8 +17,9 @@ struct PlotSettings {
     std::string y_name;  // "ms"
 };
 
-// Series are stacked from the bottom in their order; at least one x. More than 600 are averaged in groups. Single
-// peaks over twice the 99th percentile are cut off and said, so that they don't flatten everything else.
+// Series are stacked from the bottom in their order; at least one x. More than 600 are averaged in groups.
+// Single peaks over twice the 99th percentile are cut off and said, so that they don't flatten everything
+// else.
 std::string stacked_plot(const std::vector<double>& x, const std::vector<PlotSeries>& series,
                          const PlotSettings& settings);
 

@@ -14,8 +14,8 @@ namespace coppice {
 struct FrameRecord {
     uint32_t frame;
     double time_s;
-    double wall_ms;               // from the start of the frame to its picture being complete, nothing overlapped
-    double schedule_ms;           // CPU: the systems, cull and lod among them
+    double wall_ms;      // from the start of the frame to its picture being complete, nothing overlapped
+    double schedule_ms;  // CPU: the systems, cull and lod among them
     std::vector<double> pass_ms;  // device time, as PlayRecord::passes; a pass that did not run has 0
     FrameReport report;
 };
@@ -23,7 +23,7 @@ struct FrameRecord {
 struct PlayPicture {
     uint32_t frame;
     double time_s;
-    std::string file;  // beside the page
+    std::string file;            // beside the page
     std::vector<std::byte> png;  // empty where the images plugin is not installed
     uint64_t hash;               // of the pixels
 };

@@ -26,9 +26,12 @@ std::vector<double> over_compared(const PlayRecord& record, Value value) {
 
 const char* name_of(ProjectionMode mode) {
     switch (mode) {
-        case ProjectionMode::printed: return "printed";
-        case ProjectionMode::isotropic: return "isotropic";
-        case ProjectionMode::measured: return "measured";
+        case ProjectionMode::printed:
+            return "printed";
+        case ProjectionMode::isotropic:
+            return "isotropic";
+        case ProjectionMode::measured:
+            return "measured";
     }
     return "unknown";
 }
@@ -61,15 +64,20 @@ std::vector<Figure> play_figures(const PlayRecord& record) {
         {"plants", double(record.plants), "", {}},
         {"dropped_entries", most_dropped, "worst frame", {}},
         {"device_memory_mib",
-         quantile(over_frames(record, [](auto& f) { return double(f.report.gpu_bytes) / (1 << 20); }), 1.0), "MiB", {}},
-        {"load_ms", record.load.scene_ms + record.load.plants_ms + record.load.device_ms + record.load.upload_ms,
-         "ms", {}},
+         quantile(over_frames(record, [](auto& f) { return double(f.report.gpu_bytes) / (1 << 20); }), 1.0),
+         "MiB",
+         {}},
+        {"load_ms",
+         record.load.scene_ms + record.load.plants_ms + record.load.device_ms + record.load.upload_ms,
+         "ms",
+         {}},
         {"cook_ms", record.load.cook_ms, "ms", {}},
         {"first_frame_ms", record.load.first_frame_ms, "ms", {}},
     };
     for (size_t pass = 0; pass < record.passes.size(); ++pass)
         figures.push_back({"pass_" + record.passes[pass] + "_ms",
-                           count([pass](auto& f) { return f.pass_ms.size() > pass ? f.pass_ms[pass] : 0.0; }), "ms",
+                           count([pass](auto& f) { return f.pass_ms.size() > pass ? f.pass_ms[pass] : 0.0; }),
+                           "ms",
                            {}});
     if (!record.compared.empty()) {
         double lod = median(over_compared(record, [](auto& f) { return f.lod_ms; }));
@@ -77,26 +85,30 @@ std::vector<Figure> play_figures(const PlayRecord& record) {
         figures.push_back({"compared_lod_median_ms", lod, "ms", {}});
         figures.push_back({"compared_full_median_ms", full, "ms", {}});
         figures.push_back({"full_over_lod", lod > 0.0 ? full / lod : 0.0, "times", {}});
-        figures.push_back({"psnr_to_full_db", median(over_compared(record, [](auto& f) { return f.psnr_db; })), "dB", {}});
+        figures.push_back(
+            {"psnr_to_full_db", median(over_compared(record, [](auto& f) { return f.psnr_db; })), "dB", {}});
     }
     if (record.validation)
-        figures.push_back({"validation_messages", double(record.validation_messages), "", 0.0, Reach::at_most});
+        figures.push_back(
+            {"validation_messages", double(record.validation_messages), "", 0.0, Reach::at_most});
     return figures;
 }
 
 std::string frames_csv(const PlayRecord& record) {
     std::string csv = "frame,time_s,wall_ms,schedule_ms,cull_ms,lod_ms,write_ms";
     for (const std::string& pass : record.passes) csv += ",gpu_" + pass + "_ms";
-    csv += ",vertices,triangles,lines,points,terrain_triangles,full_triangles,tiles_visible,plants_visible,"
-           "work_entries,dropped_entries\n";
+    csv +=
+        ",vertices,triangles,lines,points,terrain_triangles,full_triangles,tiles_visible,plants_visible,"
+        "work_entries,dropped_entries\n";
     for (const FrameRecord& frame : record.frames) {
         const FrameReport& report = frame.report;
-        csv += fmt::format("{},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f}", frame.frame, frame.time_s, frame.wall_ms,
-                           frame.schedule_ms, report.cull_ms, report.lod_ms, report.write_ms);
+        csv += fmt::format("{},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f}", frame.frame, frame.time_s,
+                           frame.wall_ms, frame.schedule_ms, report.cull_ms, report.lod_ms, report.write_ms);
         for (double ms : frame.pass_ms) csv += fmt::format(",{:.4f}", ms);
-        csv += fmt::format(",{},{},{},{},{},{},{},{},{},{}\n", report.vertices, report.triangles, report.lines,
-                           report.points, report.terrain_triangles, report.full_triangles, report.tiles_visible,
-                           report.plants_visible, report.work_entries, report.dropped_entries);
+        csv +=
+            fmt::format(",{},{},{},{},{},{},{},{},{},{}\n", report.vertices, report.triangles, report.lines,
+                        report.points, report.terrain_triangles, report.full_triangles, report.tiles_visible,
+                        report.plants_visible, report.work_entries, report.dropped_entries);
     }
     return csv;
 }
@@ -106,11 +118,16 @@ nlohmann::json play_summary(const PlayRecord& record) {
     json figures = json::array(), pictures = json::array(), compared = json::array(), hashes = json::object();
     for (const Figure& figure : play_figures(record)) figures.push_back(to_json(figure));
     for (const PlayPicture& picture : record.pictures)
-        pictures.push_back({{"frame", picture.frame}, {"time_s", picture.time_s}, {"file", picture.file},
+        pictures.push_back({{"frame", picture.frame},
+                            {"time_s", picture.time_s},
+                            {"file", picture.file},
                             {"hash", hash_to_hex(picture.hash)}});
     for (const ComparedFrame& frame : record.compared)
-        compared.push_back({{"frame", frame.frame}, {"lod_ms", frame.lod_ms}, {"full_ms", frame.full_ms},
-                            {"lod_vertices", frame.lod_vertices}, {"full_triangles", frame.full_triangles},
+        compared.push_back({{"frame", frame.frame},
+                            {"lod_ms", frame.lod_ms},
+                            {"full_ms", frame.full_ms},
+                            {"lod_vertices", frame.lod_vertices},
+                            {"full_triangles", frame.full_triangles},
                             {"psnr_db", frame.psnr_db}});
     for (const auto& [name, hash] : record.hashes) hashes[name] = hash_to_hex(hash);
     const Machine& machine = record.machine;

@@ -30,9 +30,11 @@ bool was_pressed(const Input& input, Key key) { return input.pressed[size_t(key)
 void fly(Flight& flight, const Input& input, const std::vector<CameraKey>& path, float step_s) {
     if (was_pressed(input, Key::p)) flight.on_path = !flight.on_path;
     if (was_pressed(input, Key::r)) flight = {flight.camera, 0.0, true};
-    auto axis = [&](Key forward, Key back) { return float(is_down(input, forward)) - float(is_down(input, back)); };
-    const vec3 move = flight.camera.forward() * axis(Key::w, Key::s) + flight.camera.right() * axis(Key::d, Key::a) +
-                      vec3(0.0f, axis(Key::e, Key::q), 0.0f);
+    auto axis = [&](Key forward, Key back) {
+        return float(is_down(input, forward)) - float(is_down(input, back));
+    };
+    const vec3 move = flight.camera.forward() * axis(Key::w, Key::s) +
+                      flight.camera.right() * axis(Key::d, Key::a) + vec3(0.0f, axis(Key::e, Key::q), 0.0f);
     const bool steered = move != vec3(0.0f) || input.mouse_dx_px != 0.0f || input.mouse_dy_px != 0.0f;
     if (steered) flight.on_path = false;
     if (flight.on_path) {
@@ -52,25 +54,30 @@ void change_settings(FrameSettings& settings, const Input& input) {
     auto scale = [&](Key more, Key less, float factor) {
         return was_pressed(input, more) ? factor : was_pressed(input, less) ? 1.0f / factor : 1.0f;
     };
-    settings.sample_distance_px = std::clamp(settings.sample_distance_px * scale(Key::plus, Key::minus, 1.1f) *
-                                                 scale(Key::bracket_right, Key::bracket_left, 1.1f),
-                                             0.1f, 64.0f);
-    settings.splat_factor = std::clamp(settings.splat_factor * scale(Key::period, Key::comma, 1.05f), 0.1f, 10.0f);
+    settings.sample_distance_px =
+        std::clamp(settings.sample_distance_px * scale(Key::plus, Key::minus, 1.1f) *
+                       scale(Key::bracket_right, Key::bracket_left, 1.1f),
+                   0.1f, 64.0f);
+    settings.splat_factor =
+        std::clamp(settings.splat_factor * scale(Key::period, Key::comma, 1.05f), 0.1f, 10.0f);
     if (was_pressed(input, Key::f2))
-        settings.view = settings.view == RepresentationView::lit ? RepresentationView::kinds : RepresentationView::lit;
+        settings.view =
+            settings.view == RepresentationView::lit ? RepresentationView::kinds : RepresentationView::lit;
     if (was_pressed(input, Key::f3)) settings.level_of_detail = !settings.level_of_detail;
 }
 
 std::string title_of(const PlayHost& host, const FrameSettings& settings, double median_ms, bool help) {
     if (help)
-        return "WASD and mouse fly, Q E down and up, shift fast | [ ] or - + sample distance, , . splat factor | "
+        return "WASD and mouse fly, Q E down and up, shift fast | [ ] or - + sample distance, , . splat "
+               "factor | "
                "P pause path, R replay | F2 kinds, F3 level of detail, F1 figures, Esc quits";
     const FrameReport& report = host.vegetation->report();
-    return fmt::format("{} | {:.1f} ms, {:.0f} Hz | d' {:.2f} px, c_p {:.2f}{} | {} triangles, {} lines, {} points",
-                       host.scene.name, median_ms, 1000.0 / std::max(median_ms, 1e-3), settings.sample_distance_px,
-                       settings.splat_factor, settings.level_of_detail ? "" : ", every triangle",
-                       short_count(double(report.triangles)), short_count(double(report.lines)),
-                       short_count(double(report.points)));
+    return fmt::format(
+        "{} | {:.1f} ms, {:.0f} Hz | d' {:.2f} px, c_p {:.2f}{} | {} triangles, {} lines, {} points",
+        host.scene.name, median_ms, 1000.0 / std::max(median_ms, 1e-3), settings.sample_distance_px,
+        settings.splat_factor, settings.level_of_detail ? "" : ", every triangle",
+        short_count(double(report.triangles)), short_count(double(report.lines)),
+        short_count(double(report.points)));
 }
 
 const WindowInterface* find_window(Registry& registry) {
@@ -90,12 +97,14 @@ Status play_in_window(const PlayOptions& options) {
     Registry registry;
     const WindowInterface* windows = find_window(registry);
     if (!windows)
-        return fail(ErrorId::name_unknown, "", "plugin window", "not installed", "add --headless 1280x720 --out DIR");
+        return fail(ErrorId::name_unknown, "", "plugin window", "not installed",
+                    "add --headless 1280x720 --out DIR");
     COPPICE_TRY(std::unique_ptr<PlayHost> host, PlayHost::create(options, windows->instance_extensions()));
     COPPICE_TRY(std::unique_ptr<Window> window,
                 windows->create({"Coppice: " + host->scene.name, options.width, options.height}));
     COPPICE_CHECK(window->attach(*host->device));
-    // Nothing to record: the window copies the picture after the frame's last pass, which must be finished by then.
+    // Nothing to record: the window copies the picture after the frame's last pass, which must be finished by
+    // then.
     host->graph.add_pass("present", {{host->vegetation->color_resource(), BufferAccess::transfer_read}}, {});
 
     FrameSettings settings = options.settings;
@@ -126,7 +135,8 @@ Status play_in_window(const PlayOptions& options) {
         fly(flight, input, host->scene.camera_path, float(std::min(step_ms, 250.0) * 1e-3));
 
         COPPICE_TRY(PlayHost::Frame frame, host->begin_frame(flight.camera, settings));
-        COPPICE_CHECK(window->present(host->ring, frame.ring.commands, host->vegetation->color(), width, height));
+        COPPICE_CHECK(
+            window->present(host->ring, frame.ring.commands, host->vegetation->color(), width, height));
         if (title_clock.ms() > k_title_interval_ms || was_pressed(input, Key::f1)) {
             window->set_title(title_of(*host, settings, median(recent_ms), help));
             title_clock = {};

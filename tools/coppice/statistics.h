@@ -6,7 +6,8 @@
 
 namespace coppice {
 
-// The value below which a share of all values lie, linear between neighbours; share in [0, 1]. 0 where there are none.
+// The value below which a share of all values lie, linear between neighbours; share in [0, 1]. 0 where there
+// are none.
 inline double quantile(std::vector<double> values, double share) {
     if (values.empty()) return 0.0;
     std::sort(values.begin(), values.end());

@@ -1,5 +1,5 @@
-// Interface "coppice.window" of the module `window`: the window library behind a plugin, so that the program itself
-// links no window system and runs where there is none.
+// Interface "coppice.window" of the module `window`: the window library behind a plugin, so that the program
+// itself links no window system and runs where there is none.
 #pragma once
 #include <cstdint>
 #include "runtime/window/window.h"

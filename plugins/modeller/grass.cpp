@@ -15,7 +15,8 @@ void grow_blade(PartBuilder& blades, const GrassParameters& p, uint32_t index, R
     vec3 position = -frame.upper * (p.radius_m * out) + vec3(0, -0.004f, 0);
     frame = roll(frame, random.next_around(0.0f, 0.7f));
     frame = tilt(frame, random.next_around(p.lean.center, p.lean.spread) * (0.35f + 0.65f * out));
-    float length_m = 1.12f * p.height_m * (1.0f + p.height_variation * random.next_in(-1.0f, 0.35f)) * (1.0f - 0.2f * out);
+    float length_m =
+        1.12f * p.height_m * (1.0f + p.height_variation * random.next_in(-1.0f, 0.35f)) * (1.0f - 0.2f * out);
     float curve = random.next_around(p.curve.center, p.curve.spread) / float(p.segments);
     bool dry = random.next_unit() < p.dry;
     vec3 color = vary_color(dry ? p.dry_color_linear : p.color_linear, p.variation, random);
@@ -26,7 +27,8 @@ void grow_blade(PartBuilder& blades, const GrassParameters& p, uint32_t index, R
     for (uint32_t i = 0; i <= p.segments; ++i) {
         float t = float(i) / float(p.segments);
         float width = (0.75f + 0.5f * t) * (1.0f - t * t);  // widest a little above the foot
-        sections.push_back({position, frame, half_width_m * width, glm::mix(color * (0.7f + 0.3f * t), tip, t * t)});
+        sections.push_back(
+            {position, frame, half_width_m * width, glm::mix(color * (0.7f + 0.3f * t), tip, t * t)});
         position += frame.along * (length_m / float(p.segments));
         // Blades bend where they are thin.
         frame = roll(tilt(frame, curve * (0.4f + 1.2f * t)), twist);
@@ -51,7 +53,7 @@ void grow_stalk(PartBuilder& stalks, const GrassParameters& p, uint32_t index, R
         before = k_at[i];
         vec3 ring_color = i >= 4 ? p.dry_color_linear : color;
         rings.push_back({position, frame, radius_m * k_wide[i], ring_color});
-        frame = tilt(frame, 0.09f * float(i));
+        frame = tilt(frame, i >= 3 ? 0.16f : 0.03f);
     }
     add_tube(stalks, rings, 3, false, p.blades + index, 0);
 }

@@ -17,11 +17,11 @@ bool carries_leaves(const TreeParameters& tree, const Stem& stem) {
     return stem.level + tree.leaf_levels >= tree.levels.size();
 }
 
-// W&P: leaves of a twig by where it left its parent; of a clone, its share of the whole stem. By length too, so that
-// the short twigs of a crown's top are not denser than the rest.
+// W&P: leaves of a twig by where it left its parent; of a clone, its share of the whole stem. By length too,
+// so that the short twigs of a crown's top are not denser than the rest.
 float leaf_weight(const Stem& stem, float mean_length_m) {
-    return shape_ratio(Shape::tapered_cylindrical, 1.0f - stem.parent_fraction) * (1.0f - stem.first_fraction) *
-           (0.25f + 0.75f * stem.length_m / mean_length_m);
+    return shape_ratio(Shape::tapered_cylindrical, 1.0f - stem.parent_fraction) *
+           (1.0f - stem.first_fraction) * (0.25f + 0.75f * stem.length_m / mean_length_m);
 }
 
 float mean_leafy_length_m(const TreeParameters& parameters, const StemTree& tree) {
@@ -43,14 +43,16 @@ struct Crown {
 Crown crown_of(const TreeParameters& parameters, const StemTree& tree) {
     Box box;
     for (const Stem& stem : tree.stems) {
-        if (carries_leaves(parameters, stem)) box.include(tree.nodes[stem.first_node + stem.node_count - 1].position);
+        if (carries_leaves(parameters, stem))
+            box.include(tree.nodes[stem.first_node + stem.node_count - 1].position);
     }
     if (box.empty()) return {};
     return {box.center(), glm::max(box.size() * 0.5f, vec3(0.05f))};
 }
 
-void place_on_stem(PartBuilder& part, const LeafPlacer& placer, const LeafParameters& leaves, const StemTree& tree,
-                   const Stem& stem, uint32_t stem_index, uint32_t count, const Crown& crown) {
+void place_on_stem(PartBuilder& part, const LeafPlacer& placer, const LeafParameters& leaves,
+                   const StemTree& tree, const Stem& stem, uint32_t stem_index, uint32_t count,
+                   const Crown& crown) {
     Random random = stem.random.fork(k_stream_leaves);
     float turn = random.next_in(0.0f, 2.0f * k_pi);
     float begin = std::max(leaves.first_fraction, stem.first_fraction);
@@ -59,13 +61,15 @@ void place_on_stem(PartBuilder& part, const LeafPlacer& placer, const LeafParame
         Random own = random.fork(i);
         // The last leaf ends the twig.
         bool terminal = i + 1 == count && leaves.last_fraction >= 1.0f;
-        float fraction = begin + (end - begin) * (float(i) + (terminal ? 1.0f : own.next_in(0.2f, 0.8f))) / float(count);
+        float fraction =
+            begin + (end - begin) * (float(i) + (terminal ? 1.0f : own.next_in(0.2f, 0.8f))) / float(count);
         StemNode at = node_at(tree, stem, fraction);
         float rotation = own.next_around(leaves.rotation.center, leaves.rotation.spread);
         Frame frame;
         if (leaves.rotation.center < 0.0f) {
             vec3 level_side = glm::cross(vec3(0, 1, 0), at.frame.along);
-            frame = frame_of(at.frame.along, glm::dot(level_side, level_side) > 1e-4f ? level_side : at.frame.side);
+            frame = frame_of(at.frame.along,
+                             glm::dot(level_side, level_side) > 1e-4f ? level_side : at.frame.side);
             frame = roll(frame, i % 2 ? k_pi + rotation : k_pi - rotation);
         } else {
             turn += rotation;
@@ -73,11 +77,14 @@ void place_on_stem(PartBuilder& part, const LeafPlacer& placer, const LeafParame
         }
         float down = own.next_around(leaves.down_angle.center, leaves.down_angle.spread);
         frame = tilt(frame, terminal ? 0.25f * down : down);
-        vec3 outwards = normalize_or(vec3(at.position.x - crown.center.x, 0, at.position.z - crown.center.z), vec3(0));
+        vec3 outwards =
+            normalize_or(vec3(at.position.x - crown.center.x, 0, at.position.z - crown.center.z), vec3(0));
         frame = orient_leaf(leaves, frame, outwards);
         float outer = crown.outer(at.position);
-        float young = fraction * fraction * own.next_in(0.2f, 1.0f) * std::clamp(2.0f * outer - 0.8f, 0.0f, 1.0f);
-        placer.place(part, at.position + frame.along * at.radius_m, frame, 1.0f, outer, young, stem_index, own.fork(1));
+        float young =
+            fraction * fraction * own.next_in(0.2f, 1.0f) * std::clamp(2.0f * outer - 0.8f, 0.0f, 1.0f);
+        placer.place(part, at.position + frame.along * at.radius_m, frame, 1.0f, outer, young, stem_index,
+                     own.fork(1));
     }
 }
 
@@ -117,7 +124,8 @@ Result<PlantDescription> grow_tree(const TreeParameters& parameters, const std::
         due += each * double(leaf_weight(stem, mean_length_m));
         if (due * placer.triangles_each() > k_triangle_limit) {
             return fail(ErrorId::limit_exceeded, file, "leaves.count",
-                        fmt::format("more than {:.0f} triangles of leaves", k_triangle_limit), "lower the counts");
+                        fmt::format("more than {:.0f} triangles of leaves", k_triangle_limit),
+                        "lower the counts");
         }
         // Rounded down: what is left over goes to the next twig, and the whole is never passed.
         uint32_t count = due > placed ? uint32_t(due - placed + 1e-6) : 0;

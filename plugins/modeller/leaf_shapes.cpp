@@ -6,8 +6,8 @@
 namespace coppice::modeller {
 namespace {
 
-// The right half of a leaf: points (x, y) and triangles between them. Points on the midrib have x = 0 and are shared
-// with the mirrored left half. Triangles turn counter-clockwise seen from the upper side.
+// The right half of a leaf: points (x, y) and triangles between them. Points on the midrib have x = 0 and are
+// shared with the mirrored left half. Triangles turn counter-clockwise seen from the upper side.
 struct HalfOutline {
     std::span<const vec2> points;
     std::span<const std::array<uint8_t, 3>> triangles;
@@ -29,7 +29,8 @@ constexpr std::array<uint8_t, 3> k_oak_triangles[] = {{0, 1, 2}, {0, 2, 4}, {2, 
 
 constexpr vec2 k_heart_points[] = {{0, 0},         {0.22f, -0.13f}, {0.46f, 0.03f}, {0.5f, 0.26f},
                                    {0.30f, 0.64f}, {0, 1},          {0, 0.5f}};
-constexpr std::array<uint8_t, 3> k_heart_triangles[] = {{0, 1, 2}, {0, 2, 3}, {0, 3, 6}, {6, 3, 4}, {6, 4, 5}};
+constexpr std::array<uint8_t, 3> k_heart_triangles[] = {
+    {0, 1, 2}, {0, 2, 3}, {0, 3, 6}, {6, 3, 4}, {6, 4, 5}};
 
 constexpr vec2 k_spoon_points[] = {{0, 0}, {0.10f, 0.30f}, {0.5f, 0.70f}, {0.32f, 0.93f}, {0, 1}, {0, 0.5f}};
 constexpr std::array<uint8_t, 3> k_spoon_triangles[] = {{0, 1, 5}, {5, 1, 2}, {5, 2, 3}, {5, 3, 4}};
@@ -39,15 +40,24 @@ constexpr std::array<uint8_t, 3> k_petal_triangles[] = {{0, 1, 5}, {5, 1, 2}, {5
 
 HalfOutline outline_of(LeafShape shape) {
     switch (shape) {
-        case LeafShape::rhombic: return {k_rhombic_points, k_rhombic_triangles};
-        case LeafShape::ovate: return {k_ovate_points, k_ovate_triangles};
-        case LeafShape::lanceolate: return {k_lanceolate_points, k_ovate_triangles};
-        case LeafShape::birch: return {k_birch_points, k_ovate_triangles};
-        case LeafShape::oak: return {k_oak_points, k_oak_triangles};
-        case LeafShape::heart: return {k_heart_points, k_heart_triangles};
-        case LeafShape::spoon: return {k_spoon_points, k_spoon_triangles};
-        case LeafShape::petal: return {k_petal_points, k_petal_triangles};
-        case LeafShape::needles: break;
+        case LeafShape::rhombic:
+            return {k_rhombic_points, k_rhombic_triangles};
+        case LeafShape::ovate:
+            return {k_ovate_points, k_ovate_triangles};
+        case LeafShape::lanceolate:
+            return {k_lanceolate_points, k_ovate_triangles};
+        case LeafShape::birch:
+            return {k_birch_points, k_ovate_triangles};
+        case LeafShape::oak:
+            return {k_oak_points, k_oak_triangles};
+        case LeafShape::heart:
+            return {k_heart_points, k_heart_triangles};
+        case LeafShape::spoon:
+            return {k_spoon_points, k_spoon_triangles};
+        case LeafShape::petal:
+            return {k_petal_points, k_petal_triangles};
+        case LeafShape::needles:
+            break;
     }
     return {};
 }

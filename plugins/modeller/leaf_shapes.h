@@ -1,5 +1,5 @@
-// Leaf outlines as small meshes, folded along the midrib and curved from foot to tip: leaves are geometry, so that
-// they look right near and their area is true in the distance.
+// Leaf outlines as small meshes, folded along the midrib and curved from foot to tip: leaves are geometry, so
+// that they look right near and their area is true in the distance.
 #pragma once
 #include <array>
 #include <cstdint>

@@ -26,7 +26,8 @@ float noise(float x, float y, uint32_t period, Random random) {
         return random.fork(wrapped).fork(uint32_t(iy)).next_unit();
     };
     int32_t ix = int32_t(fx), iy = int32_t(fy);
-    return glm::mix(glm::mix(at(ix, iy), at(ix + 1, iy), tx), glm::mix(at(ix, iy + 1), at(ix + 1, iy + 1), tx), ty);
+    return glm::mix(glm::mix(at(ix, iy), at(ix + 1, iy), tx),
+                    glm::mix(at(ix, iy + 1), at(ix + 1, iy + 1), tx), ty);
 }
 
 class StemMesher {
@@ -95,7 +96,9 @@ class StemMesher {
         rings_.back().radius_m = 0.0f;
     }
 
-    uint32_t part_of(float radius_m) const { return radius_m >= branch_radius_m_ ? 0 : radius_m >= twig_radius_m_ ? 1 : 2; }
+    uint32_t part_of(float radius_m) const {
+        return radius_m >= branch_radius_m_ ? 0 : radius_m >= twig_radius_m_ ? 1 : 2;
+    }
 
     vec3 color_at(const Ring& ring, float around, const Stem& stem, uint32_t index) const {
         const BarkParameters& bark = p_.bark;
@@ -141,50 +144,75 @@ class StemMesher {
                 normalize_or(out - tangent * (fade * float(p_.lobes) * portable_cos(lobe)), out)};
     }
 
-    uint32_t add_ring(PartBuilder& part, const Ring& ring, float slope, const Stem& stem, uint32_t index, uint32_t sides) const {
+    uint32_t add_ring(PartBuilder& part, const Ring& ring, float slope, const Stem& stem, uint32_t index,
+                      uint32_t sides) const {
         uint32_t first = 0;
         for (uint32_t s = 0; s < sides; ++s) {
             float around = float(s) / float(sides);
             SurfacePoint point = point_on(ring, around, stem.level);
-            uint32_t v = part.add_vertex(point.position, normalize_or(point.normal - ring.frame.along * slope, point.normal),
+            uint32_t v = part.add_vertex(point.position,
+                                         normalize_or(point.normal - ring.frame.along * slope, point.normal),
                                          color_at(ring, around, stem, index));
             if (s == 0) first = v;
         }
         return first;
     }
 
-    // Dark scars across the trunk, finer than its mesh can colour: small diamonds just above one of its faces, tall
-    // rough ones at the foot.
-    void add_marks(uint32_t index, uint32_t sides) {
+    // Detail finer than the trunk's mesh can colour: small diamonds just above its faces. Marks lie across
+    // the trunk and grow tall at the foot (birch), furrows run along it (oak, pine).
+    void add_bark_detail(uint32_t index, uint32_t sides) {
         Random random = bark_random_.fork(index).fork(4);
         for (uint32_t m = 0; m < p_.bark.marks; ++m) {
-            // Denser towards the foot.
-            float at = random.next_unit() * random.next_in(0.3f, 1.0f) * float(rings_.size() - 2);
-            uint32_t side = random.next_below(sides);
-            float middle = random.next_in(0.4f, 0.6f), half_width = random.next_in(0.2f, 0.48f) * 0.8f;
-            float half_height_m = random.next_in(0.006f, 0.016f), lightness = random.next_in(0.0f, 0.12f);
-            size_t i = std::min(size_t(at), rings_.size() - 3);
-            const Ring &below = rings_[i], &above = rings_[i + 1];
-            if (part_of(above.radius_m) != 0) continue;
-            SurfacePoint a = point_on(below, float(side) / float(sides), 0), b = point_on(below, float(side + 1) / float(sides), 0);
-            SurfacePoint c = point_on(above, float(side) / float(sides), 0), d = point_on(above, float(side + 1) / float(sides), 0);
-            float foot = std::clamp(1.0f - below.center.y / (0.12f * tree_.height_m), 0.0f, 1.0f);
+            float at = random.next_unit();
+            at *= random.next_in(0.3f, 1.0f);  // denser towards the foot
+            float height = at * tree_.height_m;
+            float foot = std::clamp(1.0f - height / (0.12f * tree_.height_m), 0.0f, 1.0f);
+            float half_width = random.next_in(0.16f, 0.38f);
+            float half_height_m = random.next_in(0.006f, 0.016f);
             half_height_m *= 1.0f + 7.0f * foot * random.next_unit();
-            float height_m = std::max(glm::length(c.position - a.position), 1e-3f);
-            float half_height = std::min(half_height_m / height_m, 0.45f);
-            float up = std::clamp(at - float(i), half_height, 1.0f - half_height);
-            vec3 face = normalize_or(glm::cross(b.position - a.position, c.position - a.position), a.normal);
-            vec3 color = glm::mix(p_.bark.patch_color_linear, p_.bark.color_linear, lightness);
-            auto place = [&](float across, float along) {
-                vec3 position = glm::mix(glm::mix(a.position, b.position, across), glm::mix(c.position, d.position, across), along);
-                vec3 normal = glm::mix(glm::mix(a.normal, b.normal, across), glm::mix(c.normal, d.normal, across), along);
-                return parts_[0].add_vertex(position + face * (0.012f * below.radius_m), normalize_or(normal, face), color);
-            };
-            uint32_t left = place(middle - half_width, up), low = place(middle, up - half_height);
-            uint32_t right = place(middle + half_width, up), high = place(middle, up + half_height);
-            parts_[0].add_triangle(left, low, right);
-            parts_[0].add_triangle(left, right, high);
+            vec3 color =
+                glm::mix(p_.bark.patch_color_linear, p_.bark.color_linear, random.next_in(0.0f, 0.12f));
+            add_diamond(at, sides, half_width, half_height_m, color, index, random);
         }
+        for (uint32_t f = 0; f < p_.bark.furrows; ++f) {
+            float at = random.next_unit();
+            at *= random.next_in(0.2f, 1.0f);
+            float half_width = random.next_in(0.06f, 0.14f);
+            float half_height_m = trunk_radius_m_ * random.next_in(0.25f, 0.75f);
+            add_diamond(at, sides, half_width, half_height_m, vec3(-random.next_in(0.35f, 0.6f)), index,
+                        random);
+        }
+    }
+
+    // at: share of the rings; half_width: of one face's. A negative color is a factor on the bark's own.
+    void add_diamond(float at, uint32_t sides, float half_width, float half_height_m, vec3 color,
+                     uint32_t index, Random& random) {
+        float x = 1.0f + at * float(rings_.size() - 3);  // above the foot in the ground
+        uint32_t side = random.next_below(sides);
+        float middle = random.next_in(half_width, 1.0f - half_width);
+        size_t i = std::min(size_t(x), rings_.size() - 3);
+        const Ring &below = rings_[i], &above = rings_[i + 1];
+        if (part_of(above.radius_m) != 0) return;
+        float left = float(side) / float(sides), right = float(side + 1) / float(sides);
+        SurfacePoint a = point_on(below, left, 0), b = point_on(below, right, 0);
+        SurfacePoint c = point_on(above, left, 0), d = point_on(above, right, 0);
+        float half_height =
+            std::min(half_height_m / std::max(glm::length(c.position - a.position), 1e-3f), 0.48f);
+        float up = std::clamp(x - float(i), half_height, 1.0f - half_height);
+        vec3 face = normalize_or(glm::cross(b.position - a.position, c.position - a.position), a.normal);
+        if (color.x < 0.0f) color = color_at(below, left, tree_.stems[index], index) * -color;
+        auto place = [&](float across, float along) {
+            vec3 position = glm::mix(glm::mix(a.position, b.position, across),
+                                     glm::mix(c.position, d.position, across), along);
+            vec3 normal =
+                glm::mix(glm::mix(a.normal, b.normal, across), glm::mix(c.normal, d.normal, across), along);
+            return parts_[0].add_vertex(position + face * (0.012f * below.radius_m),
+                                        normalize_or(normal, face), color);
+        };
+        uint32_t west = place(middle - half_width, up), south = place(middle, up - half_height);
+        uint32_t east = place(middle + half_width, up), north = place(middle, up + half_height);
+        parts_[0].add_triangle(west, south, east);
+        parts_[0].add_triangle(west, east, north);
     }
 
     void mesh_stem(const Stem& stem, uint32_t index) {
@@ -213,8 +241,10 @@ class StemMesher {
             part.add_segment(ring.center, next.center, ring.radius_m, next.radius_m, index, stem.level,
                              color_at(ring, 0.37f, stem, index));
             if (i + 1 == last) {
-                uint32_t tip = part.add_vertex(next.center, next.frame.along, color_at(next, 0.0f, stem, index));
-                for (uint32_t s = 0; s < sides; ++s) part.add_triangle(previous + s, previous + (s + 1) % sides, tip);
+                uint32_t tip =
+                    part.add_vertex(next.center, next.frame.along, color_at(next, 0.0f, stem, index));
+                for (uint32_t s = 0; s < sides; ++s)
+                    part.add_triangle(previous + s, previous + (s + 1) % sides, tip);
                 break;
             }
             uint32_t current = add_ring(part, next, slope_at(i + 1), stem, index, sides);
@@ -225,7 +255,8 @@ class StemMesher {
             }
             previous = current;
         }
-        if (stem.level == 0 && stem.first_fraction == 0.0f && p_.bark.marks > 0 && rings_.size() > 3) add_marks(index, sides);
+        if (stem.level == 0 && stem.first_fraction == 0.0f && rings_.size() > 3)
+            add_bark_detail(index, sides);
     }
 
     const TreeParameters& p_;
@@ -238,7 +269,8 @@ class StemMesher {
 
 }  // namespace
 
-std::vector<PartDescription> mesh_stems(const TreeParameters& parameters, const StemTree& tree, Random random) {
+std::vector<PartDescription> mesh_stems(const TreeParameters& parameters, const StemTree& tree,
+                                        Random random) {
     return StemMesher(parameters, tree, random).mesh();
 }
 

@@ -6,16 +6,19 @@
 
 namespace {
 
-constexpr coppice::ModellerInterface k_interface{sizeof(coppice::ModellerInterface), &coppice::modeller::grow_plant};
+constexpr coppice::ModellerInterface k_interface{sizeof(coppice::ModellerInterface),
+                                                 &coppice::modeller::grow_plant};
 
 int load(const CoppiceHost* host) {
     if (!host || host->size_bytes < sizeof(CoppiceHost) || host->abi != COPPICE_PLUGIN_ABI) return 1;
-    return host->provide(host->context, coppice::k_modeller_interface, coppice::k_modeller_version, &k_interface);
+    return host->provide(host->context, coppice::k_modeller_interface, coppice::k_modeller_version,
+                         &k_interface);
 }
 
 void unload() {}
 
-constexpr CoppicePlugin k_plugin{sizeof(CoppicePlugin), COPPICE_PLUGIN_ABI, "modeller", "0.1.0", &load, &unload};
+constexpr CoppicePlugin k_plugin{
+    sizeof(CoppicePlugin), COPPICE_PLUGIN_ABI, "modeller", "0.1.0", &load, &unload};
 
 }  // namespace
 

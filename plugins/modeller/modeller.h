@@ -1,4 +1,5 @@
-// Interface "coppice.modeller": grows a plant from a species file. Pure: same text and seed, same plant, bit for bit.
+// Interface "coppice.modeller": grows a plant from a species file. Pure: same text and seed, same plant, bit
+// for bit.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -13,8 +14,8 @@ inline constexpr uint32_t k_modeller_version = 1;
 
 struct ModellerInterface {
     uint32_t size_bytes;
-    // json: the text of a species file; file: its name, for messages only. variation: which individual (0: the one
-    // the file's own seed gives). Errors: syntax, value_out_of_range, name_unknown, limit_exceeded.
+    // json: the text of a species file; file: its name, for messages only. variation: which individual (0:
+    // the one the file's own seed gives). Errors: syntax, value_out_of_range, name_unknown, limit_exceeded.
     Result<PlantDescription> (*grow)(std::string_view json, const std::string& file, uint64_t variation);
 };
 

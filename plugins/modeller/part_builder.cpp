@@ -14,7 +14,8 @@ Frame frame_of(vec3 along, vec3 side) {
     Frame frame;
     frame.along = normalize_or(along, vec3(0, 1, 0));
     vec3 flat = side - frame.along * glm::dot(side, frame.along);
-    frame.side = glm::dot(flat, flat) > 1e-8f ? normalize_or(flat, vec3(1, 0, 0)) : perpendicular_to(frame.along);
+    frame.side =
+        glm::dot(flat, flat) > 1e-8f ? normalize_or(flat, vec3(1, 0, 0)) : perpendicular_to(frame.along);
     frame.upper = glm::cross(frame.along, frame.side);
     return frame;
 }
@@ -56,8 +57,8 @@ void PartBuilder::begin_element() {
 
 void PartBuilder::add_segment(vec3 begin, vec3 end, float begin_radius_m, float end_radius_m, uint32_t stem,
                               uint32_t level, vec3 color) {
-    part_.skeleton.push_back({begin, end, begin_radius_m, end_radius_m, stem, level,
-                              glm::min(glm::max(color, vec3(0)), vec3(1))});
+    part_.skeleton.push_back(
+        {begin, end, begin_radius_m, end_radius_m, stem, level, glm::min(glm::max(color, vec3(0)), vec3(1))});
 }
 
 PartDescription PartBuilder::take() {
@@ -68,7 +69,8 @@ PartDescription PartBuilder::take() {
 }
 
 void add_cap(PartBuilder& part, uint32_t ring, uint32_t sides, vec3 normal) {
-    uint32_t first = part.add_vertex(part.vertex(ring).position_plant, normal, part.vertex(ring).color_linear);
+    uint32_t first =
+        part.add_vertex(part.vertex(ring).position_plant, normal, part.vertex(ring).color_linear);
     for (uint32_t s = 1; s < sides; ++s)
         part.add_vertex(part.vertex(ring + s).position_plant, normal, part.vertex(ring + s).color_linear);
     for (uint32_t s = 0; s + 2 < sides; ++s) part.add_triangle(first, first + s + 2, first + s + 1);
@@ -123,7 +125,8 @@ void add_blade(PartBuilder& part, std::span<const BladeSection> sections, float 
     for (size_t i = 0; i < last; ++i) {
         const BladeSection& section = sections[i];
         const Frame& frame = section.frame;
-        vec3 reach = -frame.side * (section.half_width_m * across), lift = frame.upper * (section.half_width_m * up);
+        vec3 reach = -frame.side * (section.half_width_m * across),
+             lift = frame.upper * (section.half_width_m * up);
         vec3 left_normal = folded ? frame.upper * across - frame.side * up : frame.upper;
         vec3 right_normal = folded ? frame.upper * across + frame.side * up : frame.upper;
         uint32_t l = part.add_vertex(section.center - reach + lift, left_normal, section.color);
@@ -167,15 +170,17 @@ LeafPlacer::LeafPlacer(const LeafParameters& leaves) : leaves_(leaves) {
     float width_ratio = leaves.width_m / leaves.length_m;
     for (uint32_t i = 0; i < k_leaf_meshes; ++i) {
         float share = 0.4f + 1.2f * float(i) / float(k_leaf_meshes - 1);
-        meshes_.push_back(
-            make_leaf_mesh(leaves.shape, width_ratio, leaves.fold_rad * (1.4f - 0.4f * share), leaves.curve_rad * share));
+        meshes_.push_back(make_leaf_mesh(leaves.shape, width_ratio, leaves.fold_rad * (1.4f - 0.4f * share),
+                                         leaves.curve_rad * share));
     }
 }
 
-void LeafPlacer::place(PartBuilder& part, vec3 foot, Frame frame, float size, float outer, float young, uint32_t stem,
-                       Random random) const {
-    float shade = leaves_.inner_brightness + (1.0f - leaves_.inner_brightness) * std::clamp(outer, 0.0f, 1.0f);
-    vec3 grown = glm::mix(leaves_.color_linear, leaves_.young_color_linear, 0.7f * std::clamp(young, 0.0f, 1.0f));
+void LeafPlacer::place(PartBuilder& part, vec3 foot, Frame frame, float size, float outer, float young,
+                       uint32_t stem, Random random) const {
+    float shade =
+        leaves_.inner_brightness + (1.0f - leaves_.inner_brightness) * std::clamp(outer, 0.0f, 1.0f);
+    vec3 grown =
+        glm::mix(leaves_.color_linear, leaves_.young_color_linear, 0.7f * std::clamp(young, 0.0f, 1.0f));
     vec3 color = vary_color(grown, leaves_.variation, random) * shade;
     vec3 tip_color = glm::mix(color, leaves_.young_color_linear * shade, 0.3f);
     float scale = size * leaves_.length_m * random.next_around(1.0f, leaves_.size_variation);
@@ -191,7 +196,8 @@ void LeafPlacer::place(PartBuilder& part, vec3 foot, Frame frame, float size, fl
     for (size_t i = 0; i < mesh.positions.size(); ++i) {
         // The midrib is a little lighter than the blade.
         float light = 1.0f + 0.12f * (1.0f - mesh.edge[i]);
-        uint32_t v = part.add_vertex(foot + world(mesh.positions[i]) * scale, normalize_or(world(mesh.normals[i]), frame.upper),
+        uint32_t v = part.add_vertex(foot + world(mesh.positions[i]) * scale,
+                                     normalize_or(world(mesh.normals[i]), frame.upper),
                                      glm::mix(color, tip_color, mesh.along[i]) * light);
         if (i == 0) first = v;
     }
@@ -199,8 +205,8 @@ void LeafPlacer::place(PartBuilder& part, vec3 foot, Frame frame, float size, fl
 }
 
 // Each needle is one long triangle; a cluster opens like a brush around its axis.
-void LeafPlacer::place_needles(PartBuilder& part, vec3 foot, const Frame& frame, float size, vec3 color, vec3 tip_color,
-                               uint32_t stem, Random& random) const {
+void LeafPlacer::place_needles(PartBuilder& part, vec3 foot, const Frame& frame, float size, vec3 color,
+                               vec3 tip_color, uint32_t stem, Random& random) const {
     part.begin_element();
     float start = random.next_in(0.0f, 2.0f * k_pi);
     for (uint32_t i = 0; i < leaves_.needles; ++i) {
@@ -227,7 +233,8 @@ Frame orient_leaf(const LeafParameters& leaves, Frame frame, vec3 outwards) {
         float sine = glm::length(axis);
         if (sine > 1e-4f) {
             float angle = leaves.droop_rad * sine;
-            frame = frame_of(rotate_about(frame.along, axis / sine, angle), rotate_about(frame.side, axis / sine, angle));
+            frame = frame_of(rotate_about(frame.along, axis / sine, angle),
+                             rotate_about(frame.side, axis / sine, angle));
         }
     }
     if (leaves.bend > 0.0f) {

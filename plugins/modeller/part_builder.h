@@ -1,5 +1,5 @@
-// Adds geometry to a part: triangles, tubes, leaves, blades. Everything that grows is written through here, so that
-// triangles of no area and colours outside [0, 1] never come out.
+// Adds geometry to a part: triangles, tubes, leaves, blades. Everything that grows is written through here,
+// so that triangles of no area and colours outside [0, 1] never come out.
 #pragma once
 #include <span>
 #include <string>
@@ -32,8 +32,8 @@ class PartBuilder {
     void add_triangle(uint32_t a, uint32_t b, uint32_t c);
     // What is added from here on belongs to the next leaf.
     void begin_element();
-    void add_segment(vec3 begin, vec3 end, float begin_radius_m, float end_radius_m, uint32_t stem, uint32_t level,
-                     vec3 color);
+    void add_segment(vec3 begin, vec3 end, float begin_radius_m, float end_radius_m, uint32_t stem,
+                     uint32_t level, vec3 color);
 
     const DescriptionVertex& vertex(uint32_t index) const { return part_.vertices[index]; }
     uint32_t triangle_count() const { return uint32_t(part_.indices.size() / 3); }
@@ -67,8 +67,8 @@ struct BladeSection {
     float half_width_m;
     vec3 color;
 };
-// A ribbon that ends in a point: 2 triangles a section, 1 at the tip; fold_rad > 0 adds the midrib and doubles it.
-// One element, with its skeleton.
+// A ribbon that ends in a point: 2 triangles a section, 1 at the tip; fold_rad > 0 adds the midrib and
+// doubles it. One element, with its skeleton.
 void add_blade(PartBuilder& part, std::span<const BladeSection> sections, float fold_rad, uint32_t stem,
                uint32_t level);
 
@@ -85,13 +85,14 @@ class LeafPlacer {
     uint32_t triangles_each() const { return triangles_of_leaf(leaves_.shape, leaves_.needles); }
 
   private:
-    void place_needles(PartBuilder& part, vec3 foot, const Frame& frame, float size, vec3 color, vec3 tip_color,
-                       uint32_t stem, Random& random) const;
+    void place_needles(PartBuilder& part, vec3 foot, const Frame& frame, float size, vec3 color,
+                       vec3 tip_color, uint32_t stem, Random& random) const;
     LeafParameters leaves_;
     std::vector<LeafMesh> meshes_;
 };
 
-// Turns a leaf's upper side towards the sky and outwards, and its tip towards the ground, as its parameters say.
+// Turns a leaf's upper side towards the sky and outwards, and its tip towards the ground, as its parameters
+// say.
 Frame orient_leaf(const LeafParameters& leaves, Frame frame, vec3 outwards);
 
 }  // namespace coppice::modeller

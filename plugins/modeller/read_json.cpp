@@ -124,7 +124,8 @@ void JsonReader::text(const char* key, std::string& value) {
     const nlohmann::json* found = take(key);
     if (!found) return;
     if (!found->is_string()) {
-        refuse(ErrorId::value_out_of_range, key, fmt::format("found {}", shown(*found)), "write a text in quotes");
+        refuse(ErrorId::value_out_of_range, key, fmt::format("found {}", shown(*found)),
+               "write a text in quotes");
         return;
     }
     value = found->get<std::string>();
@@ -142,9 +143,10 @@ void JsonReader::color(const char* key, vec3& value) {
         if (right) read[i] = float(number);
     }
     if (!right) {
-        refuse(ErrorId::value_out_of_range, key,
-               fmt::format("found {}", found->is_array() && found->size() == 3 ? found->dump() : shown(*found)),
-               "write linear red, green and blue, three numbers from 0 to 1");
+        refuse(
+            ErrorId::value_out_of_range, key,
+            fmt::format("found {}", found->is_array() && found->size() == 3 ? found->dump() : shown(*found)),
+            "write linear red, green and blue, three numbers from 0 to 1");
         return;
     }
     value = read;
@@ -164,7 +166,8 @@ void JsonReader::word(const char* key, uint32_t& value, std::initializer_list<co
     }
     std::string list;
     for (const std::string& each : all) list += (list.empty() ? "" : ", ") + each;
-    refuse(ErrorId::name_unknown, key, fmt::format("found {}", shown(*found)), fmt::format("write one of {}", list));
+    refuse(ErrorId::name_unknown, key, fmt::format("found {}", shown(*found)),
+           fmt::format("write one of {}", list));
 }
 
 JsonReader JsonReader::object(const char* key) {

@@ -1,6 +1,7 @@
-// Reads one object of a species file: every key has a default and a range, and a key nobody asked for is an error that
-// names the nearest known one. The first fault found is kept; reading goes on with defaults, so callers need no checks
-// between two keys. Takes nothing on trust: type, range and finiteness are checked here and nowhere else.
+// Reads one object of a species file: every key has a default and a range, and a key nobody asked for is an
+// error that names the nearest known one. The first fault found is kept; reading goes on with defaults, so
+// callers need no checks between two keys. Takes nothing on trust: type, range and finiteness are checked
+// here and nowhere else.
 #pragma once
 #include <initializer_list>
 #include <optional>
@@ -17,7 +18,8 @@ namespace coppice::modeller {
 class JsonReader {
   public:
     // place: how messages call this object, "levels[1]"; empty for the whole file.
-    JsonReader(const nlohmann::json& value, std::string file, std::string place, std::optional<Error>& first_error);
+    JsonReader(const nlohmann::json& value, std::string file, std::string place,
+               std::optional<Error>& first_error);
 
     void number(const char* key, float& value, float low, float high);
     void angle_deg(const char* key, float& value_rad, float low_deg, float high_deg);

@@ -10,14 +10,22 @@ float shape_ratio(Shape shape, float height_fraction) {
     float x = std::clamp(height_fraction, 0.0f, 1.0f);
     float flame = x <= 0.7f ? x / 0.7f : (1.0f - x) / 0.3f;
     switch (shape) {
-        case Shape::conical: return 0.2f + 0.8f * x;
-        case Shape::spherical: return 0.2f + 0.8f * portable_sin(k_pi * x);
-        case Shape::hemispherical: return 0.2f + 0.8f * portable_sin(0.5f * k_pi * x);
-        case Shape::cylindrical: return 1.0f;
-        case Shape::tapered_cylindrical: return 0.5f + 0.5f * x;
-        case Shape::flame: return flame;
-        case Shape::inverse_conical: return 1.0f - 0.8f * x;
-        case Shape::tend_flame: return 0.5f + 0.5f * flame;
+        case Shape::conical:
+            return 0.2f + 0.8f * x;
+        case Shape::spherical:
+            return 0.2f + 0.8f * portable_sin(k_pi * x);
+        case Shape::hemispherical:
+            return 0.2f + 0.8f * portable_sin(0.5f * k_pi * x);
+        case Shape::cylindrical:
+            return 1.0f;
+        case Shape::tapered_cylindrical:
+            return 0.5f + 0.5f * x;
+        case Shape::flame:
+            return flame;
+        case Shape::inverse_conical:
+            return 1.0f - 0.8f * x;
+        case Shape::tend_flame:
+            return 0.5f + 0.5f * flame;
     }
     return 1.0f;
 }

@@ -19,8 +19,8 @@ enum class Shape : uint32_t {
 // height_fraction: 0 at the crown's top, 1 at its base; clamped.
 float shape_ratio(Shape shape, float height_fraction);
 
-// W&P's pruning envelope: its half width at that place, relative to its greatest. peak in (0, 1): where it is widest,
-// counted from the base.
+// W&P's pruning envelope: its half width at that place, relative to its greatest. peak in (0, 1): where it is
+// widest, counted from the base.
 float envelope_ratio(float height_fraction, float width_peak, float power_low, float power_high);
 
 }  // namespace coppice::modeller

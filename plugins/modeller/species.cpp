@@ -56,6 +56,7 @@ void read_bark(JsonReader in, BarkParameters& bark) {
     in.number("streaks", bark.streaks, 0.0f, 1.0f);
     in.number("patches", bark.patches, 0.0f, 1.0f);
     in.count("marks", bark.marks, 0, 100000);
+    in.count("furrows", bark.furrows, 0, 100000);
     in.finish();
 }
 
@@ -254,11 +255,13 @@ double tree_bound(const TreeParameters& tree) {
     for (size_t i = 0; i < tree.levels.size(); ++i) {
         const LevelParameters& level = tree.levels[i];
         stems *= double(level.count) * double(1 + level.base_splits);
-        for (uint32_t s = 1; s < level.segments && stems < 1e30; ++s) stems *= 1.0 + double(level.segment_splits);
+        for (uint32_t s = 1; s < level.segments && stems < 1e30; ++s)
+            stems *= 1.0 + double(level.segment_splits);
         triangles += stems * (2.0 * level.sides * (double(level.segments) * level.rings + 1.0));
         if (i + tree.leaf_levels >= tree.levels.size()) leafy_stems += stems;
     }
-    triangles += 2.0 * tree.bark.marks * (tree.levels.empty() ? 1 : tree.levels[0].count);
+    triangles += 2.0 * (double(tree.bark.marks) + tree.bark.furrows) *
+                 (tree.levels.empty() ? 1 : tree.levels[0].count);
     double leaves = leaf_triangles(tree.leaves, leafy_stems * tree.leaves.count);
     // With a target the leaves fill what the stems leave.
     return tree.triangles ? std::max(triangles, double(tree.triangles)) : triangles + leaves;
@@ -272,8 +275,9 @@ double frond_bound(const FrondParameters& fronds) {
 double flower_bound(const FlowerParameters& flower) {
     const HeadParameters& head = flower.head;
     double stalk = flower.petiole > 0.0f ? 12.0 : 0.0;
-    double each = 2.0 * flower.sides * (flower.segments + 1.0) + leaf_triangles(flower.leaves, flower.leaves.count) +
-                  stalk * flower.leaves.count + leaf_triangles(head.petals, double(head.petals.count) * head.petal_rows) +
+    double each = 2.0 * flower.sides * (flower.segments + 1.0) +
+                  leaf_triangles(flower.leaves, flower.leaves.count) + stalk * flower.leaves.count +
+                  leaf_triangles(head.petals, double(head.petals.count) * head.petal_rows) +
                   leaf_triangles(head.sepals, head.sepals.count) + 3.0 * head.florets + 400.0;
     return each * flower.stems + leaf_triangles(flower.rosette, flower.rosette.count);
 }
@@ -282,14 +286,17 @@ double flower_bound(const FlowerParameters& flower) {
 
 double triangle_bound(const Species& species) {
     switch (species.form) {
-        case PlantForm::tree: return tree_bound(species.tree);
+        case PlantForm::tree:
+            return tree_bound(species.tree);
         case PlantForm::palm:
             return 2.0 * species.palm.trunk_sides * (2.0 * species.palm.trunk_rings + 2.0) +
                    frond_bound(species.palm.fronds);
-        case PlantForm::fern: return frond_bound(species.palm.fronds);
+        case PlantForm::fern:
+            return frond_bound(species.palm.fronds);
         case PlantForm::grass:
             return double(species.grass.blades) * 2.0 * species.grass.segments + species.grass.stalks * 60.0;
-        case PlantForm::flower: return flower_bound(species.flower);
+        case PlantForm::flower:
+            return flower_bound(species.flower);
     }
     return 0.0;
 }
@@ -303,17 +310,28 @@ Result<Species> parse_species(std::string_view json, const std::string& file) {
     in.text("name", species.name);
     in.seed("seed", species.seed);
     if (!in.has("form")) {
-        in.refuse(ErrorId::value_out_of_range, "form", "missing", "write one of tree, palm, fern, grass, flower");
+        in.refuse(ErrorId::value_out_of_range, "form", "missing",
+                  "write one of tree, palm, fern, grass, flower");
     }
     in.word("form", form, {"tree", "palm", "fern", "grass", "flower"});
     species.form = PlantForm(form);
     if (!error) {
         switch (species.form) {
-            case PlantForm::tree: read_tree(in, species.tree); break;
-            case PlantForm::palm: read_palm(in, species.palm); break;
-            case PlantForm::fern: read_fronds(in.object("fronds"), species.palm.fronds); break;
-            case PlantForm::grass: read_grass(in, species.grass); break;
-            case PlantForm::flower: read_flower(in, species.flower); break;
+            case PlantForm::tree:
+                read_tree(in, species.tree);
+                break;
+            case PlantForm::palm:
+                read_palm(in, species.palm);
+                break;
+            case PlantForm::fern:
+                read_fronds(in.object("fronds"), species.palm.fronds);
+                break;
+            case PlantForm::grass:
+                read_grass(in, species.grass);
+                break;
+            case PlantForm::flower:
+                read_flower(in, species.flower);
+                break;
         }
         in.finish();
     }

@@ -1,5 +1,5 @@
-// A species file in memory: what one kind of plant looks like, in metres and radians, with every value checked.
-// README.md lists the keys. Defaults here are the defaults of the file.
+// A species file in memory: what one kind of plant looks like, in metres and radians, with every value
+// checked. README.md lists the keys. Defaults here are the defaults of the file.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -11,7 +11,8 @@
 
 namespace coppice::modeller {
 
-inline constexpr double k_triangle_limit = 20e6;  // of one plant; more would be a mistake, and fill the memory
+inline constexpr double k_triangle_limit =
+    20e6;  // of one plant; more would be a mistake, and fill the memory
 inline constexpr float k_degree = k_pi / 180.0f;
 
 enum class PlantForm : uint32_t { tree, palm, fern, grass, flower };
@@ -33,12 +34,12 @@ struct LeafParameters {
     LeafShape shape = LeafShape::ovate;
     uint32_t count = 20;  // on one twig, stem or rosette
     float length_m = 0.1f, width_m = 0.06f, size_variation = 0.2f;
-    Varied down_angle{45 * k_degree, 15 * k_degree};   // from the twig's direction
+    Varied down_angle{45 * k_degree, 15 * k_degree};    // from the twig's direction
     Varied rotation{137.5f * k_degree, 15 * k_degree};  // about the twig, from leaf to leaf
     float first_fraction = 0.1f;                        // of the twig, free of leaves
     float last_fraction = 1.0f;
-    float bend = 0.3f;      // W&P: turn of the upper side towards the light, [0, 1]
-    float droop_rad = 0;    // turn of the tip towards the ground
+    float bend = 0.3f;                // W&P: turn of the upper side towards the light, [0, 1]
+    float droop_rad = 0;              // turn of the tip towards the ground
     float fold_rad = 20 * k_degree;   // of the halves along the midrib
     float curve_rad = 25 * k_degree;  // of the midrib from foot to tip, downwards
     uint32_t needles = 6;             // of one cluster
@@ -58,6 +59,7 @@ struct BarkParameters {
     float streaks = 0.35f;        // how much darker vertical furrows are
     float patches = 0.0f;         // share of the trunk under large dark patches
     uint32_t marks = 0;           // scars across the trunk, in the patches' colour
+    uint32_t furrows = 0;         // dark furrows along the trunk
 };
 
 // W&P's parameters of one level of stems, in their order.
@@ -91,7 +93,8 @@ struct TreeParameters {
     float lobe_depth = 0.0f;
     float base_spread_m = 0.0f;  // where there is more than one trunk: radius of the circle they leave from
     float least_radius_m = 0.003f;
-    float branch_radius_m = 0.0f, twig_radius_m = 0.0f;  // the parts' limits; 0: a fifth and a twentieth of the trunk
+    float branch_radius_m = 0.0f,
+          twig_radius_m = 0.0f;  // the parts' limits; 0: a fifth and a twentieth of the trunk
     PruneParameters prune;
     std::vector<LevelParameters> levels;
     uint32_t leaf_levels = 1;  // so many of the last levels carry leaves

@@ -10,7 +10,13 @@ namespace coppice::modeller {
 namespace {
 
 // Streams of one stem's random numbers: what one purpose draws never shifts another's.
-enum Stream : uint64_t { k_stream_shape = 1, k_stream_curve, k_stream_children, k_stream_clones, k_stream_trunks };
+enum Stream : uint64_t {
+    k_stream_shape = 1,
+    k_stream_curve,
+    k_stream_children,
+    k_stream_clones,
+    k_stream_trunks
+};
 
 constexpr size_t k_node_limit = 20'000'000;
 constexpr float k_split_radius_power = 0.42f;  // n stems after a split have each n^-p of the radius before
@@ -58,7 +64,8 @@ class StemGrower {
                 float out = p_.base_spread_m * std::sqrt((float(i) + 0.5f) / float(level.count));
                 growing.position = growing.frame.upper * -out;
             }
-            growing.frame = tilt(growing.frame, shape.next_around(level.down_angle.center, level.down_angle.spread));
+            growing.frame =
+                tilt(growing.frame, shape.next_around(level.down_angle.center, level.down_angle.spread));
             float length = std::max(shape.next_around(level.length.center, level.length.spread), 0.05f);
             growing.stem.length_m = height_m_ * length;
             growing.stem.base_radius_m = growing.stem.length_m * p_.ratio;
@@ -68,9 +75,11 @@ class StemGrower {
 
     void grow_children(const Stem& parent) {
         const LevelParameters& level = p_.levels[parent.level + 1];
-        float begin = std::max(parent.level == 0 ? p_.base_fraction : level.first_fraction, parent.first_fraction);
+        float begin =
+            std::max(parent.level == 0 ? p_.base_fraction : level.first_fraction, parent.first_fraction);
         float end = level.last_fraction;
-        float whole = std::max(level.last_fraction - (parent.level == 0 ? p_.base_fraction : level.first_fraction), 1e-3f);
+        float whole = std::max(
+            level.last_fraction - (parent.level == 0 ? p_.base_fraction : level.first_fraction), 1e-3f);
         if (!(end > begin)) return;
         float wanted = float(level.count) * (end - begin) / whole;
         if (parent.level == 1) wanted *= 0.2f + 0.8f * parent.relative_length;
@@ -84,13 +93,15 @@ class StemGrower {
             Random shape = own.fork(k_stream_shape);
             float spacing = (end - begin) / float(whorls);
             float jitter = level.whorl > 1 ? 0.08f : 0.35f;
-            float fraction = begin + spacing * (float(i / level.whorl) + 0.5f + shape.next_in(-jitter, jitter));
+            float fraction =
+                begin + spacing * (float(i / level.whorl) + 0.5f + shape.next_in(-jitter, jitter));
             float rotation = shape.next_around(level.rotation.center, level.rotation.spread);
             Growing child{Stem{parent.level + 1, 0, 0, fraction, 1, 0, 0, 0, own}, Frame{}, vec3(0)};
             StemNode at = node_at(tree_, parent, fraction);
             if (level.rotation.center < 0.0f) {
                 vec3 level_side = glm::cross(at.frame.along, vec3(0, 1, 0));
-                Frame upright = frame_of(at.frame.along, glm::dot(level_side, level_side) > 1e-4f ? -level_side : at.frame.side);
+                Frame upright = frame_of(
+                    at.frame.along, glm::dot(level_side, level_side) > 1e-4f ? -level_side : at.frame.side);
                 child.frame = roll(upright, i % 2 ? k_pi + rotation : k_pi - rotation);
             } else {
                 if (level.whorl > 1) {
@@ -103,7 +114,8 @@ class StemGrower {
                 }
             }
             float crown_base = parent.level == 0 ? p_.base_fraction : 0.0f;
-            child.frame = tilt(child.frame, down_angle(level, shape, (1.0f - fraction) / (1.0f - crown_base)));
+            child.frame =
+                tilt(child.frame, down_angle(level, shape, (1.0f - fraction) / (1.0f - crown_base)));
             child.position = at.position;
             float relative = std::max(shape.next_around(level.length.center, level.length.spread), 0.02f);
             float length_m = 0.0f;
@@ -119,20 +131,23 @@ class StemGrower {
             child.stem.length_m = length_m;
             float radius = parent.base_radius_m * portable_pow(length_m / parent.length_m, p_.ratio_power);
             child.stem.base_radius_m = std::max(std::min(radius, 0.85f * at.radius_m), p_.least_radius_m);
-            if (parent.level == 0) child.stem.base_radius_m = std::min(child.stem.base_radius_m, 0.6f * parent.base_radius_m);
+            if (parent.level == 0)
+                child.stem.base_radius_m = std::min(child.stem.base_radius_m, 0.6f * parent.base_radius_m);
             grow_whole(child);
         }
     }
 
     // W&P: a negative variation opens the angle along the parent instead of at random.
     float down_angle(const LevelParameters& level, Random& random, float height_fraction) const {
-        if (level.down_angle.spread >= 0.0f) return random.next_around(level.down_angle.center, level.down_angle.spread);
+        if (level.down_angle.spread >= 0.0f)
+            return random.next_around(level.down_angle.center, level.down_angle.spread);
         float along = 1.0f - 2.0f * shape_ratio(Shape::conical, height_fraction);
         float jitter = random.next_around(1.0f, 0.12f);
         return (level.down_angle.center + level.down_angle.spread * along) * jitter;
     }
 
-    // Shortens the stem until it stays inside the envelope, then keeps it. Pruning is for the crown's first levels.
+    // Shortens the stem until it stays inside the envelope, then keeps it. Pruning is for the crown's first
+    // levels.
     void grow_whole(Growing growing) {
         float wanted_m = growing.stem.length_m;
         if (p_.prune.ratio > 0.0f && growing.stem.level == 1) {
@@ -143,7 +158,8 @@ class StemGrower {
                 growing.stem.length_m = length_m;
                 grow_stem(growing);
                 bool inside = true;
-                for (size_t i = nodes; i < tree_.nodes.size(); ++i) inside = inside && inside_envelope(tree_.nodes[i].position);
+                for (size_t i = nodes; i < tree_.nodes.size(); ++i)
+                    inside = inside && inside_envelope(tree_.nodes[i].position);
                 tree_.stems.resize(stems, growing.stem);
                 tree_.nodes.resize(nodes);
                 split_error_ = errors;
@@ -180,8 +196,8 @@ class StemGrower {
         for (uint32_t i = growing.first_segment; i < segments; ++i) {
             turn_segment(growing, level, i, curve, helix);
             growing.position += growing.frame.along * segment_m;
-            // Both ways of a split leave its node in the old direction and with what it had of thickness, and turn
-            // from there, so that the fork is smooth.
+            // Both ways of a split leave its node in the old direction and with what it had of thickness, and
+            // turn from there, so that the fork is smooth.
             add_node(i + 1, growing.frame);
             uint32_t splits = i + 1 < segments ? splits_at(growing.stem.level, i) : 0;
             if (splits == 0) continue;
@@ -191,7 +207,8 @@ class StemGrower {
             before.radius_scale *= portable_pow(float(splits + 1), -k_split_radius_power);
             float around = curve.next_in(0.0f, 2.0f * k_pi);
             for (uint32_t k = 0; k <= splits; ++k) {
-                Growing after = split_off(before, level, around + 2.0f * k_pi * float(k) / float(splits + 1), curve);
+                Growing after =
+                    split_off(before, level, around + 2.0f * k_pi * float(k) / float(splits + 1), curve);
                 if (k == 0) {
                     growing = after;
                 } else {
@@ -209,7 +226,8 @@ class StemGrower {
         }
     }
 
-    void turn_segment(Growing& growing, const LevelParameters& level, uint32_t segment, Random& curve, float helix) const {
+    void turn_segment(Growing& growing, const LevelParameters& level, uint32_t segment, Random& curve,
+                      float helix) const {
         float n = float(level.segments);
         float bend = level.curve_rad / n;
         if (level.curve_back_rad != 0.0f) {
@@ -241,7 +259,8 @@ class StemGrower {
     }
 
     static void turn(Frame& frame, vec3 axis, float angle_rad) {
-        frame = frame_of(rotate_about(frame.along, axis, angle_rad), rotate_about(frame.side, axis, angle_rad));
+        frame =
+            frame_of(rotate_about(frame.along, axis, angle_rad), rotate_about(frame.side, axis, angle_rad));
     }
 
     // W&P: fractions of splits are not rolled as dice but handed on, so that their number is steady.
@@ -255,7 +274,8 @@ class StemGrower {
         return splits;
     }
 
-    Growing split_off(const Growing& before, const LevelParameters& level, float around, Random& random) const {
+    Growing split_off(const Growing& before, const LevelParameters& level, float around,
+                      Random& random) const {
         Growing after = before;
         float angle = std::max(random.next_around(level.split_angle.center, level.split_angle.spread), 0.0f);
         vec3 axis = rotate_about(before.frame.side, before.frame.along, around);
@@ -267,8 +287,8 @@ class StemGrower {
     }
 
     float radius_at(const Growing& growing, float fraction) const {
-        float radius = tapered_radius(p_.levels[growing.stem.level].taper, fraction, growing.stem.base_radius_m,
-                                      growing.stem.length_m);
+        float radius = tapered_radius(p_.levels[growing.stem.level].taper, fraction,
+                                      growing.stem.base_radius_m, growing.stem.length_m);
         return radius * growing.radius_scale;
     }
 

@@ -1,6 +1,6 @@
-// Grows the wood of a tree as centre lines with radii: W&P's levels of stems with splits, curvature, down angles and
-// rotation, shape ratio, pruning and attraction. No mesh yet.
-// Source: Weber and Penn 1995, section 4. Deviates: README.md.
+// Grows the wood of a tree as centre lines with radii: W&P's levels of stems with splits, curvature, down
+// angles and rotation, shape ratio, pruning and attraction. No mesh yet. Source: Weber and Penn 1995,
+// section 4. Deviates: README.md.
 #pragma once
 #include <string>
 #include <vector>
@@ -34,7 +34,8 @@ struct StemTree {
     float height_m;
 };
 
-// Scaled as a whole so that the highest node is at the height asked for. limit_exceeded where splits run away.
+// Scaled as a whole so that the highest node is at the height asked for. limit_exceeded where splits run
+// away.
 Result<StemTree> grow_stems(const TreeParameters& tree, const std::string& file, Random random);
 
 // Position, frame and radius between two nodes. Fractions outside the stem are clamped.

@@ -12,9 +12,9 @@ float tapered_radius(float taper, float along_fraction, float base_radius_m, flo
     float unit_taper = taper < 1.0f ? taper : taper < 2.0f ? 2.0f - taper : 0.0f;
     float cone_m = base_radius_m * (1.0f - unit_taper * z);
     if (taper <= 1.0f || cone_m <= 0.0f) return std::max(cone_m, 0.0f);
-    float to_end_m = (1.0f - z) * length_m;                               // W&P: Z2
+    float to_end_m = (1.0f - z) * length_m;  // W&P: Z2
     float depth = taper < 2.0f || to_end_m < cone_m ? 1.0f : taper - 2.0f;
-    float from_bead_m = to_end_m;                                         // Z3
+    float from_bead_m = to_end_m;  // Z3
     if (taper >= 2.0f) {
         float beads = std::floor(to_end_m / (2.0f * cone_m) + 0.5f);
         from_bead_m = std::fabs(to_end_m - 2.0f * cone_m * beads);

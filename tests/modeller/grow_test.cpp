@@ -1,4 +1,5 @@
-// What a user would notice of the species that come with Coppice: counts, height, sound geometry, the same plant twice.
+// What a user would notice of the species that come with Coppice: counts, height, sound geometry, the same
+// plant twice.
 #include "plugins/modeller/grow.h"
 
 #include <algorithm>
@@ -20,11 +21,11 @@ struct Expected {
 
 // Of variation 0 and of others.
 constexpr Expected k_species[] = {
-    {"pine.json", 15000, 16200, 11.5f, 14.6f},  {"birch.json", 30000, 70000, 12.0f, 16.0f},
-    {"oak.json", 30000, 110000, 12.0f, 17.0f},  {"stand_tree.json", 15900, 16100, 11.9f, 12.6f},
-    {"shrub.json", 8900, 9100, 1.3f, 2.4f},     {"palm.json", 7600, 8400, 1.8f, 3.2f},
-    {"fern.json", 1500, 4000, 0.3f, 0.8f},      {"grass.json", 200, 600, 0.3f, 0.65f},
-    {"daisy.json", 800, 2500, 0.15f, 0.4f},     {"sunflower.json", 4000, 5500, 1.4f, 2.2f},
+    {"pine.json", 15000, 16200, 11.5f, 14.6f}, {"birch.json", 30000, 70000, 12.0f, 16.0f},
+    {"oak.json", 30000, 110000, 12.0f, 17.0f}, {"stand_tree.json", 15900, 16100, 11.9f, 12.6f},
+    {"shrub.json", 8900, 9100, 1.3f, 2.4f},    {"palm.json", 7600, 8400, 1.8f, 3.2f},
+    {"fern.json", 1500, 4000, 0.3f, 0.8f},     {"grass.json", 200, 600, 0.3f, 0.65f},
+    {"daisy.json", 800, 2500, 0.15f, 0.4f},    {"sunflower.json", 4000, 5500, 1.4f, 2.2f},
 };
 
 std::string text_of(const char* file) {
@@ -53,14 +54,17 @@ Box bounds_of(const PlantDescription& plant) {
 }
 
 uint64_t hash_of(const PlantDescription& plant) {
-    static_assert(sizeof(DescriptionVertex) == 9 * sizeof(float) && sizeof(SkeletonSegment) == 13 * sizeof(float));
+    static_assert(sizeof(DescriptionVertex) == 9 * sizeof(float) &&
+                  sizeof(SkeletonSegment) == 13 * sizeof(float));
     uint64_t hash = hash_text(plant.name);
     for (const PartDescription& part : plant.parts) {
         hash = hash_combine(hash, hash_text(part.name, uint64_t(part.kind) * 2 + part.leaf));
-        hash = hash_combine(hash, hash_bytes(part.vertices.data(), part.vertices.size() * sizeof(DescriptionVertex)));
+        hash = hash_combine(
+            hash, hash_bytes(part.vertices.data(), part.vertices.size() * sizeof(DescriptionVertex)));
         hash = hash_combine(hash, hash_span<uint32_t>(part.indices));
         hash = hash_combine(hash, hash_span<uint32_t>(part.element_first_triangle));
-        hash = hash_combine(hash, hash_bytes(part.skeleton.data(), part.skeleton.size() * sizeof(SkeletonSegment)));
+        hash = hash_combine(hash,
+                            hash_bytes(part.skeleton.data(), part.skeleton.size() * sizeof(SkeletonSegment)));
     }
     return hash;
 }
@@ -85,7 +89,8 @@ TEST_P(EverySpecies, has_the_triangles_and_the_height_it_should_have) {
         // It stands on the ground, at the origin, and does not grow below.
         EXPECT_LE(box.min.y, 0.01f) << variation;
         EXPECT_GE(box.min.y, -0.06f * box.max.y) << variation;
-        EXPECT_LT(std::max(std::fabs(box.center().x), std::fabs(box.center().z)), 0.3f * std::max(box.size().x, box.size().y));
+        EXPECT_LT(std::max(std::fabs(box.center().x), std::fabs(box.center().z)),
+                  0.3f * std::max(box.size().x, box.size().y));
         EXPECT_FALSE(plant.name.empty());
     }
 }
@@ -116,7 +121,8 @@ TEST_P(EverySpecies, is_sound_geometry) {
         }
         size_t against = 0;
         for (size_t i = 0; i < part.indices.size(); i += 3) {
-            const DescriptionVertex &a = part.vertices[part.indices[i]], &b = part.vertices[part.indices[i + 1]],
+            const DescriptionVertex &a = part.vertices[part.indices[i]],
+                                    &b = part.vertices[part.indices[i + 1]],
                                     &c = part.vertices[part.indices[i + 2]];
             vec3 area = glm::cross(b.position_plant - a.position_plant, c.position_plant - a.position_plant);
             ASSERT_GT(glm::length(area), 1e-10f) << i / 3;
@@ -127,7 +133,8 @@ TEST_P(EverySpecies, is_sound_geometry) {
         if (!part.element_first_triangle.empty()) {
             EXPECT_EQ(part.element_first_triangle.front(), 0u);
             EXPECT_EQ(part.element_first_triangle.back(), part.indices.size() / 3);
-            EXPECT_TRUE(std::is_sorted(part.element_first_triangle.begin(), part.element_first_triangle.end()));
+            EXPECT_TRUE(
+                std::is_sorted(part.element_first_triangle.begin(), part.element_first_triangle.end()));
         }
     }
 }
@@ -164,9 +171,36 @@ INSTANTIATE_TEST_SUITE_P(Content, EverySpecies, testing::ValuesIn(k_species), []
     return name.substr(0, name.find('.'));
 });
 
+TEST(Grow, every_compiler_gives_the_same_bytes) {
+    // The hashes were made with gcc 12; clang and any number of threads must give them too. They change only
+    // when growing itself is changed on purpose.
+    const struct {
+        const char* json;
+        uint64_t hash;
+    } cases[] = {
+        {R"({"form": "tree", "lobes": 3, "lobe_depth": 0.1, "triangles": 9000, "bark": {"patches": 0.2, "marks": 40},
+            "levels": [{"segment_splits": 0.2, "rings": 2, "taper": 1.6},
+                       {"curve_deg": 30, "curve_back_deg": -40, "attraction_up": 0.5},
+                       {"curve_variation_deg": -90, "rotation_deg": -80, "count": 5}],
+            "leaves": {"shape": "oak", "bend": 0.4, "droop_deg": 20}})",
+         0x39debf71d24681e8},
+        {R"({"form": "tree", "levels": [{}, {"whorl": 4}], "leaves": {"shape": "needles"}})",
+         0x4a6e432cacd9feb9},
+        {R"({"form": "palm", "fronds": {"dry": 0.2}})", 0x1a948282a3d267a2},
+        {R"({"form": "grass", "stalks": 3})", 0xec58cda81c53903b},
+        {R"({"form": "flower", "petiole": 0.3, "leaves": {"count": 5, "shape": "heart"}, "rosette": {"count": 4}})",
+         0x7c37bccc75635526},
+    };
+    for (const auto& each : cases) {
+        auto plant = grow_plant(each.json, "plant.json", 2);
+        ASSERT_TRUE(plant) << to_string(plant.error());
+        EXPECT_EQ(hash_to_hex(hash_of(*plant)), hash_to_hex(each.hash)) << each.json;
+    }
+}
+
 TEST(Grow, tree_trunks_have_no_hole) {
-    // Each edge of a closed tube is met once in each direction. Parts meet at rings, so positions are compared over
-    // all woody parts together.
+    // Each edge of a closed tube is met once in each direction. Parts meet at rings, so positions are
+    // compared over all woody parts together.
     PlantDescription plant = plant_of("stand_tree.json");
     using Key = std::array<int64_t, 6>;
     auto quantised = [](vec3 p, int64_t* out) {
@@ -194,7 +228,8 @@ TEST(Grow, tree_trunks_have_no_hole) {
         if (std::binary_search(edges.begin(), edges.end(), back)) continue;
         ++open;
         // The only open ends are branches' feet, which are inside their parents: never at the ground.
-        highest_open_foot = highest_open_foot < 0.0f ? float(back[1]) * 1e-6f : std::min(highest_open_foot, float(back[1]) * 1e-6f);
+        highest_open_foot = highest_open_foot < 0.0f ? float(back[1]) * 1e-6f
+                                                     : std::min(highest_open_foot, float(back[1]) * 1e-6f);
     }
     EXPECT_GT(open, 0u);
     EXPECT_GT(highest_open_foot, 1.0f);
@@ -208,7 +243,8 @@ TEST(Grow, parts_of_wood_have_about_one_thickness) {
         for (const PartDescription& part : plant.parts) {
             if (part.leaf) continue;
             float thickest = 0.0f;
-            for (const SkeletonSegment& s : part.skeleton) thickest = std::max(thickest, 0.5f * (s.begin_radius_m + s.end_radius_m));
+            for (const SkeletonSegment& s : part.skeleton)
+                thickest = std::max(thickest, 0.5f * (s.begin_radius_m + s.end_radius_m));
             EXPECT_LT(thickest, before) << file << " " << part.name;
             before = thickest;
         }
@@ -250,7 +286,8 @@ TEST(Grow, the_bound_known_before_growing_is_kept) {
     for (const Expected& expected : k_species) {
         auto species = parse_species(text_of(expected.file), expected.file);
         ASSERT_TRUE(species);
-        EXPECT_GE(triangle_bound(*species) + 1.0, double(triangles_of(plant_of(expected.file)))) << expected.file;
+        EXPECT_GE(triangle_bound(*species) + 1.0, double(triangles_of(plant_of(expected.file))))
+            << expected.file;
     }
 }
 
@@ -266,8 +303,9 @@ TEST(Grow, extremes_of_every_angle_stay_finite) {
                   "rotation_deg": {}, "curve_variation_deg": {}, "attraction_up": {}}}],
                 "leaves": {{"shape": "heart", "count": 5, "down_angle_deg": {}, "fold_deg": 80, "curve_deg": {}, "bend": 1,
                   "droop_deg": 150, "rotation_deg": {}}}}})",
-            i, i % 7, i % 3, random.next_in(0, 3), 1 + i % 9, angle(), angle(), angle(), angle() / 10, random.next_in(0, 3),
-            1 + i % 4, angle(), angle(), angle(), angle(), angle() / 10, angle(), angle(), angle());
+            i, i % 7, i % 3, random.next_in(0, 3), 1 + i % 9, angle(), angle(), angle(), angle() / 10,
+            random.next_in(0, 3), 1 + i % 4, angle(), angle(), angle(), angle(), angle() / 10, angle(),
+            angle(), angle());
         auto plant = grow_plant(json, "plant.json", uint64_t(i));
         ASSERT_TRUE(plant) << to_string(plant.error()) << json;
         for (const PartDescription& part : plant->parts) {

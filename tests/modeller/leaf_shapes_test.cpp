@@ -6,8 +6,9 @@
 namespace coppice::modeller {
 namespace {
 
-constexpr LeafShape k_shapes[] = {LeafShape::rhombic, LeafShape::ovate, LeafShape::lanceolate, LeafShape::birch,
-                                  LeafShape::oak,     LeafShape::heart, LeafShape::spoon,      LeafShape::petal};
+constexpr LeafShape k_shapes[] = {LeafShape::rhombic, LeafShape::ovate, LeafShape::lanceolate,
+                                  LeafShape::birch,   LeafShape::oak,   LeafShape::heart,
+                                  LeafShape::spoon,   LeafShape::petal};
 
 float area_of(const LeafMesh& mesh, bool& upwards) {
     float area = 0.0f;

@@ -30,7 +30,8 @@ TEST(Species, the_shortest_tree_takes_every_default) {
 }
 
 TEST(Species, degrees_become_radians) {
-    auto species = parse_species(R"({"form": "tree", "levels": [{"curve_deg": 90, "down_angle_deg": -45}]})", "p");
+    auto species =
+        parse_species(R"({"form": "tree", "levels": [{"curve_deg": 90, "down_angle_deg": -45}]})", "p");
     ASSERT_TRUE(species) << to_string(species.error());
     EXPECT_NEAR(species->tree.levels[0].curve_rad, 0.5f * k_pi, 1e-5f);
     EXPECT_NEAR(species->tree.levels[0].down_angle.center, -0.25f * k_pi, 1e-5f);
@@ -82,8 +83,10 @@ TEST(Species, numbers_out_of_range_are_refused_with_their_place) {
         {R"({"form": "tree", "levels": [{"sides": 2}]})", "levels[0].sides", ErrorId::value_out_of_range},
         {R"({"form": "tree", "levels": [{"sides": 4.5}]})", "levels[0].sides", ErrorId::value_out_of_range},
         {R"({"form": "tree", "levels": [{"count": -1}]})", "levels[0].count", ErrorId::value_out_of_range},
-        {R"({"form": "tree", "levels": [{"count": 99999999999999999999}]})", "levels[0].count", ErrorId::limit_exceeded},
-        {R"({"form": "tree", "levels": [{"segments": 4000000000}]})", "levels[0].segments", ErrorId::limit_exceeded},
+        {R"({"form": "tree", "levels": [{"count": 99999999999999999999}]})", "levels[0].count",
+         ErrorId::limit_exceeded},
+        {R"({"form": "tree", "levels": [{"segments": 4000000000}]})", "levels[0].segments",
+         ErrorId::limit_exceeded},
         {R"({"form": "tree", "levels": [{}], "seed": -1})", "seed", ErrorId::value_out_of_range},
         {R"({"form": "tree", "levels": [{}], "name": 4})", "name", ErrorId::value_out_of_range},
         {R"({"form": "tree", "levels": [{}], "bark": {"color_linear": [1, 2, 0]}})", "bark.color_linear",
@@ -93,7 +96,8 @@ TEST(Species, numbers_out_of_range_are_refused_with_their_place) {
         {R"({"form": "tree", "levels": [{}], "bark": [0]})", "bark", ErrorId::syntax},
         {R"({"form": "flower", "head": {"petals": {"length_m": 0}}})", "head.petals.length_m",
          ErrorId::value_out_of_range},
-        {R"({"form": "palm", "fronds": {"leaflets": 100000000}})", "fronds.leaflets", ErrorId::limit_exceeded},
+        {R"({"form": "palm", "fronds": {"leaflets": 100000000}})", "fronds.leaflets",
+         ErrorId::limit_exceeded},
         {R"({"form": "grass", "dry": 1.5})", "dry", ErrorId::value_out_of_range},
     };
     for (const Case& each : cases) {

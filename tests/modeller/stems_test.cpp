@@ -54,7 +54,8 @@ TEST(Stems, splits_are_spread_evenly_not_rolled) {
         for (const Stem& stem : tree.stems) inner += stem.node_count - 2;
         size_t splits = tree.stems.size() - 8;
         EXPECT_NEAR(double(splits), 0.25 * double(inner), 1.0 + 0.3 * double(splits)) << seed;
-        EXPECT_EQ(splits, grown(parameters(json), seed + 100).stems.size() - 8) << "the number must not depend on luck";
+        EXPECT_EQ(splits, grown(parameters(json), seed + 100).stems.size() - 8)
+            << "the number must not depend on luck";
     }
 }
 
@@ -62,7 +63,8 @@ TEST(Stems, base_splits_fork_the_trunk) {
     StemTree tree = grown(parameters(R"({"form": "tree", "levels": [{"base_splits": 2, "segments": 6}]})"));
     ASSERT_EQ(tree.stems.size(), 3u);
     EXPECT_LT(tree.nodes[tree.stems[1].first_node].radius_m, tree.nodes[tree.stems[0].first_node].radius_m);
-    EXPECT_NEAR(glm::length(tree.nodes[tree.stems[1].first_node].position - tree.nodes[1].position), 0.0f, 1e-5f);
+    EXPECT_NEAR(glm::length(tree.nodes[tree.stems[1].first_node].position - tree.nodes[1].position), 0.0f,
+                1e-5f);
 }
 
 TEST(Stems, attraction_lifts_and_lowers) {
@@ -73,7 +75,8 @@ TEST(Stems, attraction_lifts_and_lowers) {
         float rise = 0.0f;
         for (size_t i = 1; i < stems.stems.size(); ++i) {
             const Stem& stem = stems.stems[i];
-            rise += stems.nodes[stem.first_node + stem.node_count - 1].position.y - stems.nodes[stem.first_node].position.y;
+            rise += stems.nodes[stem.first_node + stem.node_count - 1].position.y -
+                    stems.nodes[stem.first_node].position.y;
         }
         return rise / float(stems.stems.size() - 1);
     };
@@ -88,7 +91,8 @@ TEST(Stems, pruning_keeps_branches_inside_the_envelope) {
     StemTree stems = grown(tree);
     float widest = 0.0f;
     for (const StemNode& node : stems.nodes)
-        widest = std::max(widest, std::sqrt(node.position.x * node.position.x + node.position.z * node.position.z));
+        widest = std::max(widest,
+                          std::sqrt(node.position.x * node.position.x + node.position.z * node.position.z));
     EXPECT_LT(widest, 10.0f * 0.15f * 1.05f);
     tree.prune.ratio = 0.0f;
     float free = 0.0f;

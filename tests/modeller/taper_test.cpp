@@ -16,7 +16,8 @@ TEST(Taper, cylinder_cone_and_rounded_end) {
     EXPECT_FLOAT_EQ(tapered_radius(1.0f, 1.0f, 0.2f, 5.0f), 0.0f);
     // 2: a cylinder whose last radius is a half sphere.
     EXPECT_FLOAT_EQ(tapered_radius(2.0f, 0.0f, 0.2f, 5.0f), 0.2f);
-    EXPECT_NEAR(tapered_radius(2.0f, 1.0f - 0.1f / 5.0f, 0.2f, 5.0f), std::sqrt(0.2f * 0.2f - 0.1f * 0.1f), 1e-4f);
+    EXPECT_NEAR(tapered_radius(2.0f, 1.0f - 0.1f / 5.0f, 0.2f, 5.0f), std::sqrt(0.2f * 0.2f - 0.1f * 0.1f),
+                1e-4f);
     EXPECT_NEAR(tapered_radius(2.0f, 1.0f, 0.2f, 5.0f), 0.0f, 1e-6f);
 }
 
@@ -35,7 +36,8 @@ TEST(Taper, is_never_negative_nor_above_the_base) {
     Random random(7);
     for (int i = 0; i < 20000; ++i) {
         float base = random.next_in(1e-4f, 1.0f);
-        float radius = tapered_radius(random.next_in(0, 3), random.next_in(-0.5f, 1.5f), base, random.next_in(1e-3f, 30));
+        float radius = tapered_radius(random.next_in(0, 3), random.next_in(-0.5f, 1.5f), base,
+                                      random.next_in(1e-3f, 30));
         ASSERT_GE(radius, 0.0f);
         ASSERT_LE(radius, base * 1.00001f);
     }

@@ -172,10 +172,9 @@ class PartPacker {
             ends.push_back(line.begin_plant);
             ends.push_back(line.end_plant);
             vec3 along = line.end_plant - line.begin_plant;
-            color += dvec3(line.color_linear) * double(std::sqrt(glm::dot(along, along)));
+            color += dvec3(line.color_linear) * double(line.width_share * std::sqrt(glm::dot(along, along)));
         }
-        // Lines count by length, surface counts by area: of a part that is not equally thick everywhere the
-        // mean colour would shift. One factor a channel keeps it.
+        // Where widths were clamped the mean colour would shift. One factor a channel keeps it.
         vec3 correction(1);
         for (int c = 0; c < 3; ++c) {
             double mean = color[c] / std::max(double(traced.length_m), 1e-30);
@@ -194,12 +193,12 @@ class PartPacker {
             if (line.normal_plant != vec3(0))
                 normal = normalize_or(line.normal_plant - along * glm::dot(along, line.normal_plant), normal);
             vec3 line_color = glm::min(line.color_linear * correction, vec3(1));
-            for (size_t k = 0; k < 2; ++k) {
-                vec3 end = k == 0 ? line.begin_plant : line.end_plant;
-                Surface surface{normal, line_color, openness_.at(end), mesh_.leaf};
-                plant_.line_vertices.push_back(pack_vertex(end, surface, dither(2 * i + k)));
-                bounds_.include(end);
-            }
+            Surface surface{normal, line_color, openness_.at(centers[curve[places[i]]]), mesh_.leaf};
+            plant_.line_vertices.push_back(pack_vertex(line.begin_plant, surface, dither(i)));
+            vec3 end = line.end_plant;
+            plant_.line_vertices.push_back({end.x, end.y, end.z, std::bit_cast<uint32_t>(line.width_share)});
+            bounds_.include(line.begin_plant);
+            bounds_.include(end);
         }
         packed_.line_count = uint32_t(traced.lines.size());
         packed_.line_length_m = traced.length_m;

@@ -1,6 +1,7 @@
 #include "plugins/vegetation/cook/measure_coverage.h"
 
 #include <algorithm>
+#include <bit>
 #include <vector>
 #include "plugins/vegetation/cook/coverage_raster.h"
 #include "runtime/core/jobs.h"
@@ -12,7 +13,7 @@ namespace {
 constexpr uint32_t k_side_limit = 2048;
 constexpr double k_wanted_pixels = 30000.0;  // over all views of a level: keeps its noise under 1 %
 constexpr double k_triangle_budget = 3.0e6;  // over all views of a level
-constexpr uint32_t k_least_views = 8, k_most_views = 256;
+constexpr uint32_t k_least_views = 8, k_most_views = 1024;
 constexpr float k_least_area_px2 = 6.0f;  // below, a level says what the next larger one says
 constexpr int k_rounds = 6;
 
@@ -31,7 +32,8 @@ View view_of(uint32_t index, uint32_t count) {
     view.right = perpendicular_to(direction);
     view.up = glm::cross(view.right, direction);
     Random random(17, index);
-    view.shift = vec2(random.next_unit(), random.next_unit());
+    view.shift.x = random.next_unit();  // one after the other: arguments of a call have no order
+    view.shift.y = random.next_unit();
     view.chance = random.next_unit();
     return view;
 }
@@ -105,7 +107,8 @@ class PartCoverage {
             float width = area / std::max(length * q, 1.0e-6f);
             for (size_t i = 0; i < count; ++i)
                 raster.line(place(view, line_vertices_[2 * i], pixels_per_meter, side),
-                            place(view, line_vertices_[2 * i + 1], pixels_per_meter, side), width);
+                            place(view, line_vertices_[2 * i + 1], pixels_per_meter, side),
+                            width * std::bit_cast<float>(line_vertices_[2 * i + 1].surface));
         }
         return raster.covered();
     }

@@ -7,11 +7,10 @@
 namespace coppice {
 namespace {
 
-constexpr float k_error_share = 0.995f;    // of the surface, that eps_l covers
-constexpr float k_bend_tolerance = 0.25f;  // of the radius
-constexpr float k_bent_share = 0.05f;      // of the length may be off by more
-constexpr float k_short_share = 0.25f;     // of the length may be in lines shorter than the others
-constexpr float k_facing_share = 0.3f;     // |sum of a n| / sum of a, from where a surface faces one way
+constexpr float k_error_share = 0.995f;   // of the surface, that eps_l covers
+constexpr float k_bend_tolerance = 0.5f;  // of the radius; lines begin where that is a quarter of a pixel
+constexpr float k_short_share = 0.25f;    // of the length may be in lines shorter than the others
+constexpr float k_facing_share = 0.3f;    // |sum of a n| / sum of a, from where a surface faces one way
 
 float length_of(const SkeletonSegment& s) {
     vec3 along = s.end_plant - s.begin_plant;
@@ -113,6 +112,23 @@ float choose_line_length(const std::vector<std::vector<Cut>>& bends, size_t line
     }
 }
 
+// From widths in m to shares of the mean, which stays 1 over the length after the clamp.
+void share_widths(TracedLines& traced) {
+    auto scale_to_mean = [&traced] {
+        double sum = 0.0;
+        for (const TracedLine& line : traced.lines) {
+            vec3 along = line.end_plant - line.begin_plant;
+            sum += double(line.width_share) * double(std::sqrt(glm::dot(along, along)));
+        }
+        double mean = sum / std::max(double(traced.length_m), 1e-30);
+        for (TracedLine& line : traced.lines)
+            line.width_share = mean > 0.0 ? float(line.width_share / mean) : 1.0f;
+    };
+    scale_to_mean();
+    for (TracedLine& line : traced.lines) line.width_share = std::clamp(line.width_share, 0.1f, 6.0f);
+    scale_to_mean();
+}
+
 // What the triangles around a segment look like.
 struct Surroundings {
     double area = 0.0;
@@ -163,8 +179,13 @@ TracedLines trace_lines(const PartDescription& part, const TracedSkeleton& skele
             // All segments the piece touches.
             Surroundings sum;
             dvec3 skeleton_color(0);
-            double skeleton_length = 0.0;
+            double skeleton_length = 0.0, area_m2 = 0.0;
             for (;;) {
+                // Of a segment's surface, the share of its length that lies on this piece.
+                float length = length_of(segments[at]);
+                float shared = std::min(before + length, cuts[piece + 1].along_m) -
+                               std::max(before, cuts[piece].along_m);
+                area_m2 += around[at].area * double(std::clamp(shared / length, 0.0f, 1.0f));
                 sum.area += around[at].area;
                 sum.color += around[at].color;
                 sum.normal += around[at].normal;
@@ -173,20 +194,25 @@ TracedLines trace_lines(const PartDescription& part, const TracedSkeleton& skele
                 if (at + 1 >= stem.last || before + length_of(segments[at]) > cuts[piece + 1].along_m) break;
                 before += length_of(segments[at++]);
             }
-            TracedLine line{cuts[piece].position_plant, cuts[piece + 1].position_plant, vec3(0), vec3(0)};
+            TracedLine line{cuts[piece].position_plant, cuts[piece + 1].position_plant, vec3(0), vec3(0),
+                            0.0f};
             if (line.begin_plant == line.end_plant) continue;
             line.color_linear = vec3(sum.area > 0.0 ? sum.color * (1.0 / sum.area)
                                                     : skeleton_color * (1.0 / skeleton_length));
             double facing = std::sqrt(glm::dot(sum.normal, sum.normal));
             if (facing > double(k_facing_share) * sum.area && sum.area > 0.0)
                 line.normal_plant = normalize_or(vec3(sum.normal * (1.0 / facing)), vec3(0));
-            traced.lines.push_back(line);
             vec3 along = line.end_plant - line.begin_plant;
-            traced.length_m += std::sqrt(glm::dot(along, along));
+            float length_m = std::sqrt(glm::dot(along, along));
+            line.width_share = float(area_m2) / length_m;
+            traced.lines.push_back(line);
+            traced.length_m += length_m;
         }
         first_line.push_back(uint32_t(traced.lines.size()));
         for (uint32_t s = stem.first; s < stem.last; ++s) stem_of_segment[s] = uint32_t(i);
     }
+
+    share_widths(traced);
 
     std::vector<std::pair<float, uint32_t>> errors(areas.size());  // of each triangle: its farthest corner's
     parallel_for(areas.size(), 1 << 12, [&](size_t begin, size_t end) {

@@ -1,4 +1,5 @@
 #include <atomic>
+#include <bit>
 #include <cstring>
 #include "plugins/vegetation/plant/format.h"
 #include "plugins/vegetation/plant/plant.h"
@@ -140,6 +141,9 @@ Result<Plant> view_plant(std::span<const std::byte> bytes, const std::string& fi
         return wrong("triangle vertices", "a position is not finite");
     if (!positions_finite(plant.points)) return wrong("points", "a position is not finite");
     if (!positions_finite(plant.line_vertices)) return wrong("line vertices", "a position is not finite");
+    for (size_t i = 1; i < plant.line_vertices.size(); i += 2)
+        if (float width = std::bit_cast<float>(plant.line_vertices[i].surface); !(width > 0.0f && width <= 100.0f))
+            return wrong("line vertices", "a width that is not in (0, 100]");
     return plant;
 }
 

@@ -73,7 +73,8 @@ struct Plant {
     std::span<const uint32_t>
         point_owners;  // for each point, its triangle's index within the part: the blend draws
                        // triangles [0, t) and the points whose owner is >= t
-    std::span<const PackedVertex> line_vertices;  // two a line
+    std::span<const PackedVertex> line_vertices;  // two a line; the second one's surface is not a surface but the
+                                                  // line's own width over the part's mean, as float bits, in (0, 100]
     uint32_t dropped_triangles = 0;               // zero area or not finite, left out by the cook
     uint32_t dropped_vertices = 0;                // used by no triangle
     std::shared_ptr<const MappedFile> file;       // keeps the spans alive; or:

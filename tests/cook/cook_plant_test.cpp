@@ -1,6 +1,7 @@
 #include "plugins/vegetation/cook/cook_plant.h"
 
 #include <gtest/gtest.h>
+#include <bit>
 #include "plugins/vegetation/plant/plant.h"
 #include "runtime/core/jobs.h"
 #include "tests/cook/shapes.h"
@@ -118,10 +119,9 @@ TEST(CookPlant, KeepsTheMeanColorInEveryRepresentation) {
             const PackedVertex* v = &plant.line_vertices[2 * i];
             vec3 along = position_of(v[1]) - position_of(v[0]);
             double l = double(std::sqrt(glm::dot(along, along)));
+            l *= double(std::bit_cast<float>(v[1].surface));  // its width over the mean
             length += l;
-            lines +=
-                dvec3(decode_surface(v[0].surface).color_linear + decode_surface(v[1].surface).color_linear) *
-                (l / 2);
+            lines += dvec3(decode_surface(v[0].surface).color_linear) * l;
         }
         // Few lines: the dither's noise is larger than what is asked of the mean.
         if (part.line_count > 30) expect_mean(lines, length, "lines");

@@ -4,6 +4,8 @@
 namespace coppice {
 namespace {
 
+constexpr uint32_t k_width_one = std::bit_cast<uint32_t>(1.0f);  // of a line: its width over the part's mean
+
 TEST_F(RasterTest, APointOfOnePixelCoversThePixelItLiesIn) {
     PartChoice choice;
     choice.points = 3;
@@ -69,7 +71,7 @@ TEST_F(RasterTest, LinesCoverLengthTimesWidthInTheMean) {
                     float angle = random.next_in(0.0f, 6.283f), cx = x + random.next_unit(), cy = y + random.next_unit();
                     float dx = 0.5f * length * portable_cos(angle), dy = 0.5f * length * portable_sin(angle);
                     ends.push_back(at(cx - dx, cy - dy, 20.0f));
-                    ends.push_back(at(cx + dx, cy + dy, 20.0f));
+                    ends.push_back(at(cx + dx, cy + dy, 20.0f, k_width_one));
                 }
             PartChoice choice;
             choice.lines = uint32_t(ends.size() / 2);
@@ -81,7 +83,7 @@ TEST_F(RasterTest, LinesCoverLengthTimesWidthInTheMean) {
 }
 
 TEST_F(RasterTest, LinesAreCutAtTheNearPlane) {
-    PackedVertex behind{0.0f, -1.0f, 5.0f, 1u}, ahead{0.0f, -1.0f, -50.0f, 1u};
+    PackedVertex behind{0.0f, -1.0f, 5.0f, 1u}, ahead{0.0f, -1.0f, -50.0f, k_width_one};
     PartChoice choice;
     choice.lines = 1;
     choice.line_width_px = 1.0f;
@@ -183,7 +185,7 @@ TEST_F(RasterTest, EverythingBehindOrBesideLeavesThePictureEmpty) {
     for (int i = 0; i < 300; ++i)
         vertices.push_back({random.next_in(-9, 9), random.next_in(-9, 9), random.next_in(0.0f, 9.0f), 1u});
     for (int i = 0; i < 300; ++i)
-        vertices.push_back({random.next_in(20, 29), random.next_in(-9, 9), random.next_in(-15.0f, 0.0f), 1u});
+        vertices.push_back({random.next_in(20, 29), random.next_in(-9, 9), random.next_in(-15.0f, 0.0f), k_width_one});
     PartChoice choice;
     choice.triangles = 200;
     choice.points = 600;

@@ -1,6 +1,7 @@
 #include "tools/coppice/bench_raster.h"
 
 #include <algorithm>
+#include <bit>
 #include <vector>
 #include "plugins/vegetation/cull/frustum.h"
 #include "plugins/vegetation/draw/rasteriser.h"
@@ -40,6 +41,7 @@ std::vector<PackedVertex> make_vertices(const Case& test, float focal_px) {
         if (test.kind == WorkKind::lines) {
             push(around(0.0f, test.size_px * 0.5f));
             push(around(k_pi, test.size_px * 0.5f));
+            vertices.back().surface = std::bit_cast<uint32_t>(1.0f);  // its width over the mean
         } else if (test.kind == WorkKind::triangles) {
             for (int v = 0; v < 3; ++v) push(around(float(v) * 2.0f * k_pi / 3.0f, test.size_px * 0.57735027f));
         } else {

@@ -17,8 +17,10 @@ vec3 sky_radiance(Light light, vec3 direction) {
     float up = clamp(direction.y, 0.0, 1.0);
     vec3 sky = mix(light.horizon_color.rgb, light.zenith_color.rgb, sqrt(up));
     float toward = max(dot(direction, light.to_sun.xyz), 0.0);
-    float square = toward * toward, fourth = square * square, eighth = fourth * fourth;
-    return sky + light.sun_color.rgb * (0.06 * eighth + 0.25 * pow(toward, 256.0));
+    float power4 = toward * toward * toward * toward, power8 = power4 * power4, power32 = power8 * power8 * power8 * power8;
+    float power256 = power32 * power32 * power32 * power32;
+    power256 *= power256;
+    return sky + light.sun_color.rgb * (0.06 * power8 + 0.25 * power256);
 }
 
 vec3 shade(Light light, vec3 normal, vec3 to_viewer, vec3 color, float openness, bool leaf) {
@@ -42,13 +44,15 @@ vec3 apply_haze(Light light, vec3 radiance, vec3 direction, float distance_m) {
     return mix(haze, radiance, clear);
 }
 
-// Linear to what the screen takes, [0, 1] sRGB-encoded: a shoulder that reaches white at 4.
+// Linear to what the screen takes, [0, 1] sRGB-encoded: a shoulder that reaches white at 4. The encoding is a fit in
+// square roots, within 0.002 of the exact curve and several times faster on a CPU.
 vec3 present(Light light, vec3 radiance) {
     vec3 c = radiance * light.to_sun.w;
     c = c * (1.0 + c / 16.0) / (1.0 + c);
     c = clamp(c * 1.35, 0.0, 1.0);
-    vec3 high = 1.055 * pow(max(c, vec3(1.0e-6)), vec3(1.0 / 2.4)) - 0.055;
-    return mix(high, c * 12.92, lessThanEqual(c, vec3(0.0031308)));
+    vec3 root2 = sqrt(c), root4 = sqrt(root2), root8 = sqrt(root4);
+    vec3 high = 0.662002687 * root2 + 0.684122060 * root4 - 0.323583601 * root8 - 0.0225411470 * c;
+    return clamp(mix(high, c * 12.92, lessThanEqual(c, vec3(0.0031308))), 0.0, 1.0);
 }
 
 #endif

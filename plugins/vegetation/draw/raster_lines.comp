@@ -1,5 +1,6 @@
 #version 460
-// Lines of one instance and part, two vertices each.
+// Lines of one instance and part, two vertices each; the second carries the line's
+// own width over the part's mean.
 // A line is a parallelogram cut along its steeper axis: at each step it covers the pixels whose centres lie within
 // half its slanted width, so that it covers length * width in the mean at any direction and any width.
 #extension GL_GOOGLE_include_directive : require
@@ -35,7 +36,7 @@ void main() {
         float span = b.x - a.x;
         float slope = span > 0.0 ? (b.y - a.y) / span : 0.0;
         float depth_slope = span > 0.0 ? (depths.y - depths.x) / span : 0.0;
-        float width = min(entry.size_px * sqrt(1.0 + slope * slope), 64.0);
+        float width = min(entry.size_px * uintBitsToFloat(v1.w) * sqrt(1.0 + slope * slope), 64.0);
         uint surface = turn_surface(t, v0.w, k_kind_line);
 
         float first = max(ceil(a.x - 0.5), 0.0), last = min(ceil(b.x - 0.5), limit.x);

@@ -196,7 +196,7 @@ void Rasteriser::add_passes() {
                     [this](VkCommandBuffer commands) {
                         const gpu::Buffer* buffers[] = {&visibility_, &color_, &slots_[slot_].light};
                         resolve_pipeline_.bind(commands, buffers, &resolve_, sizeof resolve_);
-                        resolve_pipeline_.dispatch(commands, (width_ * height_ - 1) / k_pixels_a_group + 1);
+                        resolve_pipeline_.dispatch(commands, ((width_ - 1) / k_pixels_a_group + 1) * height_);
                     });
 }
 

@@ -1,5 +1,6 @@
 #version 460
-// Lights each pixel once, from its depth and surface word. One group takes a run of 256 pixels, a lane every n-th.
+// Lights each pixel once, from its depth and surface word. One group takes up to 256 pixels of a row, a
+// lane every n-th.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
 #include "plugins/vegetation/draw/surface.glsl"
@@ -14,32 +15,35 @@ layout(push_constant) uniform Frame {
     uint show_kinds;
 } frame;
 
-layout(binding = 0) readonly buffer Visibility { uvec2 visibility[]; };
+layout(binding = 0) readonly buffer Visibility { uint64_t visibility[]; };
 layout(binding = 1) writeonly buffer Color { uint color[]; };
 layout(binding = 2) readonly buffer Lights { Light light; };
 
-const uint k_run = 256u;
+const uint k_run = 256u;  // pixels of one row
 
 void main() {
     uint group = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
-    uint width = uint(frame.right.w), total = width * uint(frame.up.w);
+    uint width = uint(frame.right.w), runs_a_row = (width + k_run - 1u) / k_run;
+    uint row = group / runs_a_row, first = (group - row * runs_a_row) * k_run;
+    if (row >= uint(frame.up.w)) return;
+    uint last = min(first + k_run, width);
     Light sun = light;
-    for (uint i = gl_LocalInvocationID.x; i < k_run; i += gl_WorkGroupSize.x) {
-        uint index = group * k_run + i;
-        if (index >= total) break;
-        uvec2 word = visibility[index];
-        vec2 pixel = vec2(float(index % width), float(index / width)) + 0.5;
-        vec3 ray = frame.forward.xyz + frame.right.xyz * (pixel.x - 0.5 * frame.right.w) -
-                   frame.up.xyz * (pixel.y - 0.5 * frame.up.w);
+    vec3 ray_row = frame.forward.xyz - frame.right.xyz * (0.5 * frame.right.w - 0.5) -
+                   frame.up.xyz * (float(row) + 0.5 - 0.5 * frame.up.w);
+    for (uint column = first + gl_LocalInvocationID.x; column < last; column += gl_WorkGroupSize.x) {
+        uint index = row * width + column;
+        uint64_t word = visibility[index];
+        uint surface = uint(word);
+        float depth = uintBitsToFloat(uint(word >> 32));
+        vec3 ray = ray_row + frame.right.xyz * float(column);
         float ray_length = length(ray);
         vec3 direction = ray / ray_length;
-        float depth = uintBitsToFloat(word.y);
         bool covered = depth > 0.0;
         float distance_m = frame.forward.w / max(depth, 1.0e-12) * ray_length;
-        vec3 normal = decode_normal(word.x);
-        normal /= max(length(normal), 1.0e-6);
-        vec3 albedo = decode_color_linear(word.x);
-        vec3 lit = shade(sun, normal, -direction, albedo, decode_openness(word.x), (word.x & k_leaf_bit) != 0u);
+        vec3 normal = decode_normal(surface);
+        normal *= inversesqrt(max(dot(normal, normal), 1.0e-12));
+        vec3 albedo = decode_color_linear(surface);
+        vec3 lit = shade(sun, normal, -direction, albedo, decode_openness(surface), (surface & k_leaf_bit) != 0u);
         lit = apply_haze(sun, lit, direction, distance_m);
         vec3 shown = covered ? lit : sky_radiance(sun, direction);
         shown = frame.show_kinds != 0u && covered ? albedo * (0.3 + 0.7 * abs(normal.y)) : shown;

@@ -184,13 +184,14 @@ class StemMesher {
         }
     }
 
-    // at: share of the rings; half_width: of one face's. A negative color is a factor on the bark's own.
+    // at: share of the trunk's length; half_width: of one face's. A negative color is a factor on the bark's
+    // own.
     void add_diamond(float at, uint32_t sides, float half_width, float half_height_m, vec3 color,
                      uint32_t index, Random& random) {
-        float x = 1.0f + at * float(rings_.size() - 3);  // above the foot in the ground
         uint32_t side = random.next_below(sides);
         float middle = random.next_in(half_width, 1.0f - half_width);
-        size_t i = std::min(size_t(x), rings_.size() - 3);
+        size_t i = 1;  // ring 0 is in the ground
+        while (i + 3 < rings_.size() && rings_[i + 1].fraction <= at) ++i;
         const Ring &below = rings_[i], &above = rings_[i + 1];
         if (part_of(above.radius_m) != 0) return;
         float left = float(side) / float(sides), right = float(side + 1) / float(sides);
@@ -198,14 +199,15 @@ class StemMesher {
         SurfacePoint c = point_on(above, left, 0), d = point_on(above, right, 0);
         float half_height =
             std::min(half_height_m / std::max(glm::length(c.position - a.position), 1e-3f), 0.48f);
-        float up = std::clamp(x - float(i), half_height, 1.0f - half_height);
+        float along = (at - below.fraction) / std::max(above.fraction - below.fraction, 1e-6f);
+        float up = std::clamp(along, half_height, 1.0f - half_height);
         vec3 face = normalize_or(glm::cross(b.position - a.position, c.position - a.position), a.normal);
         if (color.x < 0.0f) color = color_at(below, left, tree_.stems[index], index) * -color;
-        auto place = [&](float across, float along) {
+        auto place = [&](float across, float share) {
             vec3 position = glm::mix(glm::mix(a.position, b.position, across),
-                                     glm::mix(c.position, d.position, across), along);
+                                     glm::mix(c.position, d.position, across), share);
             vec3 normal =
-                glm::mix(glm::mix(a.normal, b.normal, across), glm::mix(c.normal, d.normal, across), along);
+                glm::mix(glm::mix(a.normal, b.normal, across), glm::mix(c.normal, d.normal, across), share);
             return parts_[0].add_vertex(position + face * (0.012f * below.radius_m),
                                         normalize_or(normal, face), color);
         };

@@ -183,7 +183,7 @@ TEST(Grow, every_compiler_gives_the_same_bytes) {
                        {"curve_deg": 30, "curve_back_deg": -40, "attraction_up": 0.5},
                        {"curve_variation_deg": -90, "rotation_deg": -80, "count": 5}],
             "leaves": {"shape": "oak", "bend": 0.4, "droop_deg": 20}})",
-         0x39debf71d24681e8},
+         0x93d9ce0785ee74c2},
         {R"({"form": "tree", "levels": [{}, {"whorl": 4}], "leaves": {"shape": "needles"}})",
          0x4a6e432cacd9feb9},
         {R"({"form": "palm", "fronds": {"dry": 0.2}})", 0x1a948282a3d267a2},

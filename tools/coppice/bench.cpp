@@ -54,7 +54,7 @@ Status run(const BenchCommand& command) {
     if (bench == benches().end()) {
         std::vector<std::string> names;
         for (const Bench& known : benches()) names.emplace_back(known.name);
-        return fail(ErrorId::name_unknown, "", "", "no benchmark is called '" + command.name + "'",
+        return fail(ErrorId::name_unknown, "", "", fmt::format("no benchmark is called '{}'", command.name),
                     fmt::format("use one of: {}", fmt::join(names, ", ")));
     }
     COPPICE_TRY(const nlohmann::json result, bench->run(command.settings));

@@ -2,6 +2,7 @@
 
 #include <fstream>
 #include <thread>
+#include <fmt/format.h>
 #include <sys/utsname.h>
 #include <unistd.h>
 
@@ -47,7 +48,8 @@ std::string command_line() {
     for (std::string word; std::getline(stream, word, '\0');) {
         if (line.empty()) word = word.substr(word.find_last_of('/') + 1);
         const bool quoted = word.empty() || word.find_first_of(" \t\"$*;&|<>()") != std::string::npos;
-        line += (line.empty() ? "" : " ") + (quoted ? "'" + word + "'" : word);
+        if (!line.empty()) line += ' ';
+        line += quoted ? fmt::format("'{}'", word) : word;
     }
     return line;
 }

@@ -61,12 +61,12 @@ int run(int argc, char** argv) {
     if (first.empty()) return report_error({ErrorId::usage, "", "", "no subcommand", remedy});
     if (!is_option && std::find(names.begin(), names.end(), first) == names.end())
         return report_error(
-            {ErrorId::name_unknown, "", "", "no subcommand is called '" + first + "'", remedy});
+            {ErrorId::name_unknown, "", "", fmt::format("no subcommand is called '{}'", first), remedy});
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return app.exit(error);  // --help and --version
-        const std::string command = is_option ? "" : " " + first;
+        const std::string command = is_option ? "" : fmt::format(" {}", first);
         return report_error({ErrorId::usage, "", "", error.what(), "see coppice" + command + " --help"});
     }
     if (!chosen) return report_error({ErrorId::usage, "", "", "no subcommand", remedy});

@@ -57,16 +57,25 @@ class PassTimes {
         if (slot >= frames_.size() || frames_[slot] == k_none) return;
         FrameRecord& frame = record_.frames[frames_[slot]];
         frames_[slot] = k_none;
+        size_t next = 0;  // where a pass that was never seen before belongs: behind the one before it
         for (const auto& section : sections) {
             auto pass = std::find(record_.passes.begin(), record_.passes.end(), section.name);
-            size_t index = size_t(pass - record_.passes.begin());
-            if (pass == record_.passes.end()) record_.passes.emplace_back(section.name);
+            const size_t index = pass == record_.passes.end() ? next : size_t(pass - record_.passes.begin());
+            if (pass == record_.passes.end()) insert_pass(index, section.name);
             if (frame.pass_ms.size() <= index) frame.pass_ms.resize(index + 1, 0.0);
             frame.pass_ms[index] += section.ms;
+            next = index + 1;
         }
     }
 
   private:
+    void insert_pass(size_t index, const char* name) {
+        record_.passes.insert(record_.passes.begin() + ptrdiff_t(index), name);
+        for (FrameRecord& frame : record_.frames)
+            if (frame.pass_ms.size() > index)
+                frame.pass_ms.insert(frame.pass_ms.begin() + ptrdiff_t(index), 0.0);
+    }
+
     static constexpr size_t k_none = SIZE_MAX;
     PlayRecord& record_;
     std::vector<size_t> frames_;

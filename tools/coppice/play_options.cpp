@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <fmt/format.h>
 #include "runtime/core/picture.h"
 
 namespace coppice {
@@ -21,7 +22,7 @@ Status parse_size(const std::string& text, uint32_t& width, uint32_t& height) {
     if (cross == std::string::npos || !parse_number(view.substr(0, cross), width) ||
         !parse_number(view.substr(cross + 1), height) || width == 0 || height == 0 ||
         width > k_picture_side_limit || height > k_picture_side_limit)
-        return fail(ErrorId::usage, "", "--headless", "'" + text + "' is not a picture size",
+        return fail(ErrorId::usage, "", "--headless", fmt::format("'{}' is not a picture size", text),
                     "write WIDTHxHEIGHT, each from 1 to 16384, as in 1280x720");
     return {};
 }
@@ -42,8 +43,7 @@ Result<std::vector<uint32_t>> chosen_frames(const std::string& text, uint32_t fr
         size_t comma = std::min(text.find(',', first), text.size());
         std::string_view piece = std::string_view(text).substr(first, comma - first);
         if (!piece.empty() && !parse_number(piece, number))
-            return fail(ErrorId::usage, "", "--pictures",
-                        "'" + std::string(piece) + "' is not a frame number",
+            return fail(ErrorId::usage, "", "--pictures", fmt::format("'{}' is not a frame number", piece),
                         "write frames as in 0,30,60 or how many pictures, as in 4");
         if (!piece.empty() && number < frame_count) frames.push_back(number);
         first = comma + 1;

@@ -9,7 +9,8 @@ namespace coppice {
 namespace {
 
 constexpr ImagesInterface k_interface = {
-    sizeof(ImagesInterface), read_image, read_image_memory, write_image, encode_png, read_float_image, write_float_image,
+    sizeof(ImagesInterface), read_image,        read_image_memory, write_image, encode_png,
+    read_float_image,        write_float_image,
 };
 
 int load(const CoppiceHost* host) {

@@ -23,11 +23,21 @@ struct Format {
 };
 using namespace std::string_view_literals;
 constexpr Format k_formats[] = {
-    {"png", 0, "\x89PNG\r\n\x1a\n"sv}, {"jpeg", 0, "\xff\xd8\xff"sv},     {"openexr", 0, "\x76\x2f\x31\x01"sv},
-    {"webp", 8, "WEBP"sv},             {"tiff", 0, "II*\0"sv},            {"tiff", 0, "MM\0*"sv},
-    {"hdr", 0, "#?"sv},                {"bmp", 0, "BM"sv},                {"dds", 0, "DDS "sv},
-    {"gif", 0, "GIF8"sv},              {"pnm", 0, "P6"sv},                {"pnm", 0, "P5"sv},
-    {"pnm", 0, "PF"sv},                {"pnm", 0, "Pf"sv},                {"jpeg2000", 4, "jP  "sv},
+    {"png", 0, "\x89PNG\r\n\x1a\n"sv},
+    {"jpeg", 0, "\xff\xd8\xff"sv},
+    {"openexr", 0, "\x76\x2f\x31\x01"sv},
+    {"webp", 8, "WEBP"sv},
+    {"tiff", 0, "II*\0"sv},
+    {"tiff", 0, "MM\0*"sv},
+    {"hdr", 0, "#?"sv},
+    {"bmp", 0, "BM"sv},
+    {"dds", 0, "DDS "sv},
+    {"gif", 0, "GIF8"sv},
+    {"pnm", 0, "P6"sv},
+    {"pnm", 0, "P5"sv},
+    {"pnm", 0, "PF"sv},
+    {"pnm", 0, "Pf"sv},
+    {"jpeg2000", 4, "jP  "sv},
 };
 
 const char* find_format(std::span<const std::byte> bytes) {
@@ -41,7 +51,8 @@ const char* find_format(std::span<const std::byte> bytes) {
 tl::unexpected<Error> corrupt(const std::string& name, std::string fault) {
     for (char& c : fault)
         if (c == '\n') c = ' ';
-    return fail(ErrorId::file_corrupt, name, "", fault.empty() ? "the picture does not decode" : std::move(fault),
+    return fail(ErrorId::file_corrupt, name, "",
+                fault.empty() ? "the picture does not decode" : std::move(fault),
                 "a whole, undamaged picture");
 }
 
@@ -51,8 +62,8 @@ Status check_header(const OIIO::ImageSpec& spec, const std::string& name) {
     if (spec.width > int(k_picture_side_limit) || spec.height > int(k_picture_side_limit) || spec.depth > 1 ||
         spec.nchannels > 64 || uint64_t(spec.width) * uint64_t(spec.height) > k_pixel_limit)
         return fail(ErrorId::limit_exceeded, name, "header",
-                    "a picture of " + std::to_string(spec.width) + "x" + std::to_string(spec.height) + " with " +
-                        std::to_string(spec.nchannels) + " channels",
+                    "a picture of " + std::to_string(spec.width) + "x" + std::to_string(spec.height) +
+                        " with " + std::to_string(spec.nchannels) + " channels",
                     "sides of at most 16384, 134 million pixels and 64 channels");
     return {};
 }
@@ -70,7 +81,8 @@ Channels choose_channels(const OIIO::ImageSpec& spec) {
 
 // Decodes the first picture of an opened file as `count` channels of Value.
 template <class Value>
-Result<std::vector<Value>> decode(OIIO::ImageInput& input, const std::string& name, bool with_alpha, Value opaque) {
+Result<std::vector<Value>> decode(OIIO::ImageInput& input, const std::string& name, bool with_alpha,
+                                  Value opaque) {
     OIIO::ImageSpec spec = input.spec();
     COPPICE_CHECK(check_header(spec, name));
     size_t pixels = size_t(spec.width) * size_t(spec.height), stored = size_t(spec.nchannels);
@@ -127,7 +139,8 @@ auto open_and(std::span<const std::byte> bytes, const std::string& name, Body&& 
     -> decltype(body(std::declval<OIIO::ImageInput&>())) {
     try {
         if (bytes.size() > k_file_limit_bytes)
-            return fail(ErrorId::limit_exceeded, name, "", "the file has " + std::to_string(bytes.size()) + " bytes",
+            return fail(ErrorId::limit_exceeded, name, "",
+                        "the file has " + std::to_string(bytes.size()) + " bytes",
                         "pictures of at most 1 GiB");
         const char* format = find_format(bytes);
         if (!format)
@@ -135,8 +148,8 @@ auto open_and(std::span<const std::byte> bytes, const std::string& name, Body&& 
                         "PNG, JPEG, WebP, TIFF, EXR, HDR, BMP, DDS, GIF, JPEG 2000 or PNM");
         auto input = OIIO::ImageInput::create(format);
         if (!input)
-            return fail(ErrorId::format_unknown, name, "", std::string("this OpenImageIO does not read ") + format,
-                        "PNG or JPEG");
+            return fail(ErrorId::format_unknown, name, "",
+                        std::string("this OpenImageIO does not read ") + format, "PNG or JPEG");
         OIIO::ImageSpec config;
         config["oiio:UnassociatedAlpha"] = 1;
         OIIO::ImageSpec spec;
@@ -151,14 +164,16 @@ auto open_and(std::span<const std::byte> bytes, const std::string& name, Body&& 
         }
         TemporaryFile file(bytes);
         if (!file.whole())
-            return fail(ErrorId::file_unreadable, name, "", "no temporary file could be written to decode it from",
+            return fail(ErrorId::file_unreadable, name, "",
+                        "no temporary file could be written to decode it from",
                         "space in the folder that TMPDIR names");
         if (!input->open(file.path(), spec, config)) return corrupt(name, input->geterror());
         auto result = body(*input);
         input->close();
         return result;
     } catch (const std::bad_alloc&) {
-        return fail(ErrorId::limit_exceeded, name, "", "not enough memory to decode the picture", "a smaller picture");
+        return fail(ErrorId::limit_exceeded, name, "", "not enough memory to decode the picture",
+                    "a smaller picture");
     } catch (const std::exception& thrown) {
         return corrupt(name, thrown.what());
     } catch (...) {

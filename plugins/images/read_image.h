@@ -1,4 +1,5 @@
-// Pictures out of files and memory by OpenImageIO. Nothing is allocated before the header's sides are checked.
+// Pictures out of files and memory by OpenImageIO. Nothing is allocated before the header's sides are
+// checked.
 #pragma once
 #include <cstddef>
 #include <span>

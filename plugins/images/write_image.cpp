@@ -28,8 +28,8 @@ Status check_shape(uint32_t width, uint32_t height, size_t values, size_t channe
 }
 
 // rows of three channels from the top
-Result<std::vector<std::byte>> encode(const char* format, uint32_t width, uint32_t height, OIIO::TypeDesc type,
-                                      const void* rgb) {
+Result<std::vector<std::byte>> encode(const char* format, uint32_t width, uint32_t height,
+                                      OIIO::TypeDesc type, const void* rgb) {
     auto failed = [format](const std::string& why) {
         return fail(ErrorId::write_failed, "", "", std::string("cannot encode ") + format + ": " + why,
                     "an OpenImageIO with this format");
@@ -80,7 +80,8 @@ Status write_image(const std::string& path, const Picture& picture) {
     std::string ending = ending_of(path);
     if (ending == "png") return encode_and_write(path, encode_png(picture));
     if (ending == "ppm") return write_ppm(path, picture);
-    return fail(ErrorId::usage, path, "", "pictures are not written as \"" + ending + "\"", "end the name in .png or .ppm");
+    return fail(ErrorId::usage, path, "", "pictures are not written as \"" + ending + "\"",
+                "end the name in .png or .ppm");
 }
 
 Status write_float_image(const std::string& path, const FloatPicture& picture) {
@@ -90,7 +91,8 @@ Status write_float_image(const std::string& path, const FloatPicture& picture) {
         return fail(ErrorId::usage, path, "", "linear pictures are not written as \"" + ending + "\"",
                     "end the name in .exr or .pfm");
     COPPICE_CHECK(name_the_file(check_shape(picture.width, picture.height, picture.rgb.size(), 3), path));
-    return encode_and_write(path, encode("exr", picture.width, picture.height, OIIO::TypeDesc::FLOAT, picture.rgb.data()));
+    return encode_and_write(
+        path, encode("exr", picture.width, picture.height, OIIO::TypeDesc::FLOAT, picture.rgb.data()));
 }
 
 }  // namespace coppice

@@ -7,7 +7,8 @@
 
 namespace coppice {
 
-// 8 bit, opaque: alpha is dropped. Errors: value_out_of_range (empty, or rgba of the wrong size), write_failed.
+// 8 bit, opaque: alpha is dropped. Errors: value_out_of_range (empty, or rgba of the wrong size),
+// write_failed.
 Result<std::vector<std::byte>> encode_png(const Picture& picture);
 // *.png; *.ppm through the core. Another ending: usage.
 Status write_image(const std::string& path, const Picture& picture);

@@ -14,8 +14,11 @@ namespace {
 
 constexpr int64_t k_tile_limit = 16;       // repeats of a texture on one triangle that are cut
 constexpr size_t k_least_corners = 8;      // of a window, whatever the target
-constexpr double k_uv_slack = 1.0e-4;      // coordinates meant to end at a texture's border may miss it by this
-constexpr double k_key_steps = 65536.0;    // regions are the same where their coordinates agree to 1 / this
+constexpr size_t k_most_corners = 16'384;  // the same; cutting ears takes the square of it
+constexpr size_t k_most_traced =
+    200'000;                           // corners traced; a finer picture than that is noise, and is averaged
+constexpr double k_uv_slack = 1.0e-4;  // coordinates meant to end at a texture's border may miss it by this
+constexpr double k_key_steps = 65536.0;  // regions are the same where their coordinates agree to 1 / this
 
 // Whole repeats of the texture: [first, first + count) in both directions.
 struct Window {
@@ -33,7 +36,7 @@ struct WindowMesh {
 // One triangle, or two that lie flat in one plane and map alike: corners 0 to 2 are the first one's.
 struct Region {
     std::array<uint32_t, 3> vertices;
-    std::array<dvec2, 4> uvs;   // counter-clockwise or clockwise as in the texture
+    std::array<dvec2, 4> uvs;    // counter-clockwise or clockwise as in the texture
     std::array<int, 4> outline;  // order of uvs round the region
     int corner_count;
     uint32_t element;
@@ -41,7 +44,8 @@ struct Region {
     double uv_area() const {
         double twice = 0.0;
         for (int i = 2; i < corner_count; ++i)
-            twice += cross_at(uvs[size_t(outline[0])], uvs[size_t(outline[size_t(i - 1)])], uvs[size_t(outline[size_t(i)])]);
+            twice += cross_at(uvs[size_t(outline[0])], uvs[size_t(outline[size_t(i - 1)])],
+                              uvs[size_t(outline[size_t(i)])]);
         return std::fabs(twice) * 0.5;
     }
 };
@@ -87,8 +91,8 @@ void move_to_window(Region& region, GltfWrap wrap_s, GltfWrap wrap_t) {
 
 class Cutter {
   public:
-    Cutter(const ImportMesh& mesh, const Picture& picture, GltfWrap wrap_s, GltfWrap wrap_t, float opaque_alpha,
-           const AlphaCutSettings& settings)
+    Cutter(const ImportMesh& mesh, const Picture& picture, GltfWrap wrap_s, GltfWrap wrap_t,
+           float opaque_alpha, const AlphaCutSettings& settings)
         : mesh_(mesh),
           picture_(picture),
           wrap_s_(wrap_s),
@@ -125,18 +129,21 @@ class Cutter {
     }
 
     bool same_vertex(uint32_t a, uint32_t b) const {
-        return a == b || (mesh_.positions_plant[a] == mesh_.positions_plant[b] && mesh_.uvs[a] == mesh_.uvs[b]);
+        return a == b ||
+               (mesh_.positions_plant[a] == mesh_.positions_plant[b] && mesh_.uvs[a] == mesh_.uvs[b]);
     }
 
     static dvec2 weights_of(const Region& region, dvec2 uv) {
         double area = cross_at(region.uvs[0], region.uvs[1], region.uvs[2]);
-        return dvec2(cross_at(region.uvs[0], uv, region.uvs[2]), cross_at(region.uvs[0], region.uvs[1], uv)) / area;
+        return dvec2(cross_at(region.uvs[0], uv, region.uvs[2]), cross_at(region.uvs[0], region.uvs[1], uv)) /
+               area;
     }
 
     template <class Value>
     Value blend(const std::vector<Value>& values, const Region& region, dvec2 w) const {
         Value a = values[region.vertices[0]];
-        return a + (values[region.vertices[1]] - a) * float(w.x) + (values[region.vertices[2]] - a) * float(w.y);
+        return a + (values[region.vertices[1]] - a) * float(w.x) +
+               (values[region.vertices[2]] - a) * float(w.y);
     }
 
     // Two halves of a flat card are cut as one, so that no needless edge runs through the leaf.
@@ -159,8 +166,10 @@ class Cutter {
         vec3 expected = blend(mesh_.positions_plant, region, w);
         float size = glm::length(p1 - p0) + glm::length(mesh_.positions_plant[region.vertices[2]] - p0);
         if (!(glm::length(expected - mesh_.positions_plant[fourth]) < 1.0e-3f * size)) return false;
-        if (!(glm::length(blend(mesh_.normals_plant, region, w) - mesh_.normals_plant[fourth]) < 0.05f)) return false;
-        if (!(glm::length(blend(mesh_.colors_linear, region, w) - mesh_.colors_linear[fourth]) < 0.02f)) return false;
+        if (!(glm::length(blend(mesh_.normals_plant, region, w) - mesh_.normals_plant[fourth]) < 0.05f))
+            return false;
+        if (!(glm::length(blend(mesh_.colors_linear, region, w) - mesh_.colors_linear[fourth]) < 0.02f))
+            return false;
         // The fourth corner stands across the shared edge, between its two ends.
         int apart = !shared[0] ? 0 : !shared[1] ? 1 : 2;
         region.uvs[3] = uv;
@@ -168,7 +177,8 @@ class Cutter {
         region.corner_count = 4;
         double turn = cross_at(region.uvs[0], region.uvs[1], region.uvs[2]);
         for (size_t i = 0; i < 4; ++i) {
-            double corner = cross_at(region.uvs[size_t(region.outline[i])], region.uvs[size_t(region.outline[(i + 1) % 4])],
+            double corner = cross_at(region.uvs[size_t(region.outline[i])],
+                                     region.uvs[size_t(region.outline[(i + 1) % 4])],
                                      region.uvs[size_t(region.outline[(i + 2) % 4])]);
             if (corner * turn <= 0.0) {  // not convex
                 region.outline = {0, 1, 2, 3};
@@ -201,7 +211,8 @@ class Cutter {
         for (size_t i = 0; i < cut.weights.size(); ++i) {
             out_.positions_plant.push_back(blend(mesh_.positions_plant, region, cut.weights[i]));
             vec3 normal = mesh_.normals_plant[region.vertices[0]];
-            out_.normals_plant.push_back(normalize_or(blend(mesh_.normals_plant, region, cut.weights[i]), normal));
+            out_.normals_plant.push_back(
+                normalize_or(blend(mesh_.normals_plant, region, cut.weights[i]), normal));
             out_.colors_linear.push_back(blend(mesh_.colors_linear, region, cut.weights[i]) * cut.colors[i]);
         }
         for (uint32_t index : cut.indices) out_.indices.push_back(first + index);
@@ -252,7 +263,8 @@ class Cutter {
                     if (p_side >= 0.0) clipped.push_back(p);
                     if ((p_side > 0.0 && q_side < 0.0) || (p_side < 0.0 && q_side > 0.0)) {
                         double s = p_side / (p_side - q_side);
-                        clipped.push_back({p.uv + (q.uv - p.uv) * s, p.color + (q.color - p.color) * float(s)});
+                        clipped.push_back(
+                            {p.uv + (q.uv - p.uv) * s, p.color + (q.color - p.color) * float(s)});
                     }
                 }
                 polygon.swap(clipped);
@@ -291,13 +303,14 @@ class Cutter {
         return found->second;
     }
 
-    // The mesh's triangles, dealt out to its windows by the triangles that show them. An outline of n corners makes about
-    // n triangles each time the whole window is shown.
+    // The mesh's triangles, dealt out to its windows by the triangles that show them. An outline of n corners
+    // makes about n triangles each time the whole window is shown.
     size_t corner_target(const Window& window) const {
         const WindowUse& use = uses_.at(window);
         double shown = std::max(use.uv_area / double(window.count_u * window.count_v), 1.0e-6);
         double share = double(use.triangles) / double(mesh_.triangle_count());
-        return std::max(k_least_corners, size_t(double(settings_.triangle_target) * share / shown));
+        return std::clamp(size_t(double(settings_.triangle_target) * share / shown), k_least_corners,
+                          k_most_corners);
     }
 
     // Mean alpha of `step` x `step` texels, from texel (x, y) of the repeated texture on.
@@ -312,15 +325,15 @@ class Cutter {
         return float(double(sum) / double(step * step));
     }
 
-    WindowMesh make_window(const Window& window) const {
+    // The window's outline on a grid of one line every `step` texels, in texels from the window's corner.
+    std::vector<Ring> trace_window(const Window& window, int64_t step) const {
         int64_t width = window.count_u * picture_.width, height = window.count_v * picture_.height;
-        int64_t step = 1;
-        while (std::max(width, height) / step > int64_t(settings_.grid_side_limit)) step *= 2;
         int64_t columns = (width + step - 1) / step, rows = (height + step - 1) / step;
         // Grid lines: the window's border twice (outside nothing is opaque), and the middles of the texels.
         auto lines = [step](int64_t size, int64_t count) {
             std::vector<double> at{0.0, 0.0};
-            for (int64_t i = 0; i < count; ++i) at.push_back(std::min((double(i) + 0.5) * double(step), double(size)));
+            for (int64_t i = 0; i < count; ++i)
+                at.push_back(std::min((double(i) + 0.5) * double(step), double(size)));
             at.insert(at.end(), {double(size), double(size)});
             return at;
         };
@@ -330,7 +343,8 @@ class Cutter {
         std::vector<float> alpha(size_t(columns + 2) * size_t(rows + 2));
         for (int64_t y = -1; y <= rows; ++y)
             for (int64_t x = -1; x <= columns; ++x)
-                alpha[size_t(y + 1) * size_t(columns + 2) + size_t(x + 1)] = mean_alpha(x0 + x * step, y0 + y * step, step);
+                alpha[size_t(y + 1) * size_t(columns + 2) + size_t(x + 1)] =
+                    mean_alpha(x0 + x * step, y0 + y * step, step);
         size_t across = grid.xs.size(), down = grid.ys.size();
         grid.values.assign(across * down, opaque_alpha_ - 1.0f);
         // The first and last line of texels stand between two texels, the others on one.
@@ -343,10 +357,24 @@ class Cutter {
             for (size_t x = 1; x + 1 < across; ++x) {
                 auto [left, right] = texels_at(x, across);
                 auto [top, bottom] = texels_at(y, down);
-                const float *upper = &alpha[top * size_t(columns + 2)], *lower = &alpha[bottom * size_t(columns + 2)];
-                grid.values[y * across + x] = (upper[left] + upper[right] + lower[left] + lower[right]) * 0.25f;
+                const float *upper = &alpha[top * size_t(columns + 2)],
+                            *lower = &alpha[bottom * size_t(columns + 2)];
+                grid.values[y * across + x] =
+                    (upper[left] + upper[right] + lower[left] + lower[right]) * 0.25f;
             }
-        auto rings = trace_outline(grid, opaque_alpha_);
+        return trace_outline(grid, opaque_alpha_);
+    }
+
+    WindowMesh make_window(const Window& window) const {
+        int64_t width = window.count_u * picture_.width, height = window.count_v * picture_.height;
+        int64_t step = 1;
+        while (std::max(width, height) / step > int64_t(settings_.grid_side_limit)) step *= 2;
+        std::vector<Ring> rings;
+        for (size_t corners = SIZE_MAX; corners > k_most_traced; step *= 2) {
+            rings = trace_window(window, step);
+            corners = 0;
+            for (const Ring& ring : rings) corners += ring.size();
+        }
         double area = 0.0;
         for (const Ring& ring : rings) area += signed_area(ring);
         OutlineLimits limits;
@@ -369,7 +397,8 @@ class Cutter {
         return mesh;
     }
 
-    // A rough outline takes in transparent texels, which have no colour to give; so the mean is put right at the end.
+    // A rough outline takes in transparent texels, which have no colour to give; so the mean is put right at
+    // the end.
     void keep_mean(WindowMesh& mesh) const {
         vec4 all = texture_.texel(vec2(0.0f), texture_.level_count() - 1);
         dvec3 sum(0.0);

@@ -33,7 +33,8 @@ std::vector<vec3> average_colors(const TexturePyramid& texture, std::span<const 
         float step = 1.0f / (3.0f * float(n));
         for (uint32_t i = 0; i < n; ++i)
             for (uint32_t j = 0; i + j < n; ++j)
-                for (uint32_t half = 0; half < 2 && i + j + half < n; ++half) {  // the two kinds of small triangles
+                for (uint32_t half = 0; half < 2 && i + j + half < n;
+                     ++half) {  // the two kinds of small triangles
                     float s = float(3 * i + 1 + half) * step, r = float(3 * j + 1 + half) * step;
                     vec4 sample = texture.texel(corner[0] + a * s + b * r, level) * area;
                     sums[indices[t]] += sample * (1.0f - s - r);

@@ -45,7 +45,8 @@ Middles make_middles(const TexturedMesh& textured, float square_limit) {
         auto [a, b] = edge;
         middle = uint32_t(mesh.positions_plant.size());
         mesh.positions_plant.push_back((mesh.positions_plant[a] + mesh.positions_plant[b]) * 0.5f);
-        mesh.normals_plant.push_back(normalize_or(mesh.normals_plant[a] + mesh.normals_plant[b], mesh.normals_plant[a]));
+        mesh.normals_plant.push_back(
+            normalize_or(mesh.normals_plant[a] + mesh.normals_plant[b], mesh.normals_plant[a]));
         mesh.colors_linear.push_back((mesh.colors_linear[a] + mesh.colors_linear[b]) * 0.5f);
         mesh.uvs.push_back((mesh.uvs[a] + mesh.uvs[b]) * 0.5f);
     }
@@ -73,7 +74,8 @@ void divide(const TexturedMesh& textured, float square_limit) {
             elements.push_back(mesh.elements[t]);
         };
         // Turned so that edge 0 is divided and, where one is not, it is the last.
-        while (divided > 0 && divided < 3 && !(middle[turn] != UINT32_MAX && middle[(turn + 2) % 3] == UINT32_MAX))
+        while (divided > 0 && divided < 3 &&
+               !(middle[turn] != UINT32_MAX && middle[(turn + 2) % 3] == UINT32_MAX))
             ++turn;
         uint32_t a = v[turn], b = v[(turn + 1) % 3], c = v[(turn + 2) % 3];
         uint32_t ab = middle[turn], bc = middle[(turn + 1) % 3], ca = middle[(turn + 2) % 3];

@@ -1,5 +1,5 @@
-// The bytes behind buffer views: from the GLB's chunk, data URIs, or files beside the document; decompressed where
-// EXT_meshopt_compression says so. After load, view(i) is in memory and in bounds.
+// The bytes behind buffer views: from the GLB's chunk, data URIs, or files beside the document; decompressed
+// where EXT_meshopt_compression says so. After load, view(i) is in memory and in bounds.
 #pragma once
 #include <cstddef>
 #include <memory>
@@ -30,7 +30,8 @@ class GltfBuffers {
 
   private:
     Result<std::span<const std::byte>> load_buffer(const GltfDocument& document, size_t index,
-                                                   std::span<const std::byte> glb_binary, const std::string& base_dir);
+                                                   std::span<const std::byte> glb_binary,
+                                                   const std::string& base_dir);
     Result<std::span<const std::byte>> decompress(const GltfMeshopt& packed, std::span<const std::byte> bytes,
                                                   const std::string& file, const std::string& place);
 

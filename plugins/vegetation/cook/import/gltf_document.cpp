@@ -8,14 +8,22 @@ namespace coppice {
 namespace {
 
 constexpr int k_depth_limit = 64;
-constexpr uint64_t k_size_limit_bytes = uint64_t(1) << 40;   // of numbers in the file; what is loaded is limited later
-constexpr uint64_t k_count_limit = uint64_t(1) << 28;        // elements of an accessor
+constexpr uint64_t k_size_limit_bytes = uint64_t(1)
+                                        << 40;  // of numbers in the file; what is loaded is limited later
+constexpr uint64_t k_count_limit = uint64_t(1) << 28;  // elements of an accessor
 
 // Extensions a file may require of us: those we read, and those that change neither shape nor base colour.
-constexpr std::string_view k_known_extensions[] = {
-    "KHR_mesh_quantization", "EXT_meshopt_compression", "KHR_texture_transform", "EXT_mesh_gpu_instancing",
-    "EXT_texture_webp", "KHR_lights_punctual", "KHR_xmp_json_ld", "KHR_xmp", "KHR_draco_mesh_compression",
-    "KHR_animation_pointer", "KHR_node_visibility"};
+constexpr std::string_view k_known_extensions[] = {"KHR_mesh_quantization",
+                                                   "EXT_meshopt_compression",
+                                                   "KHR_texture_transform",
+                                                   "EXT_mesh_gpu_instancing",
+                                                   "EXT_texture_webp",
+                                                   "KHR_lights_punctual",
+                                                   "KHR_xmp_json_ld",
+                                                   "KHR_xmp",
+                                                   "KHR_draco_mesh_compression",
+                                                   "KHR_animation_pointer",
+                                                   "KHR_node_visibility"};
 
 bool is_known_extension(std::string_view name) {
     return name.starts_with("KHR_materials_") ||
@@ -44,7 +52,8 @@ GltfHints read_hints(const JsonPlace& owner) {
         if (importance > 0.0f && importance <= 1000.0f)
             hints.importance = importance;
         else
-            ours.fault(ErrorId::value_out_of_range, "importance " + std::to_string(importance), "above 0, at most 1000");
+            ours.fault(ErrorId::value_out_of_range, "importance " + std::to_string(importance),
+                       "above 0, at most 1000");
     }
     if (ours.has("leaf")) hints.leaf = ours.flag("leaf", false);
     return hints;
@@ -59,7 +68,8 @@ void read_asset(const JsonPlace& root) {
     for (const JsonPlace& item : root.array("extensionsRequired")) {
         std::string name = item.as_text().value_or("");
         if (!is_known_extension(name))
-            item.fault(ErrorId::format_unknown, "the file requires the extension \"" + name.substr(0, 80) + "\"",
+            item.fault(ErrorId::format_unknown,
+                       "the file requires the extension \"" + name.substr(0, 80) + "\"",
                        "export it without this extension");
     }
 }
@@ -88,7 +98,8 @@ GltfMeshopt read_meshopt(const JsonPlace& from, size_t buffer_count) {
     else if (mode == "INDICES")
         packed.mode = Mode::indices;
     else
-        from.fault(ErrorId::value_out_of_range, "mode \"" + mode.substr(0, 40) + "\"", "ATTRIBUTES, TRIANGLES or INDICES");
+        from.fault(ErrorId::value_out_of_range, "mode \"" + mode.substr(0, 40) + "\"",
+                   "ATTRIBUTES, TRIANGLES or INDICES");
     if (filter == "NONE")
         packed.filter = Filter::none;
     else if (filter == "OCTAHEDRAL")
@@ -102,8 +113,9 @@ GltfMeshopt read_meshopt(const JsonPlace& from, size_t buffer_count) {
                    "NONE, OCTAHEDRAL, QUATERNION or EXPONENTIAL");
     // What the decoder takes for granted.
     uint32_t stride = packed.stride_bytes;
-    bool fits = packed.mode == Mode::attributes ? stride % 4 == 0
-                                                : (stride == 2 || stride == 4) && packed.filter == Filter::none;
+    bool fits = packed.mode == Mode::attributes
+                    ? stride % 4 == 0
+                    : (stride == 2 || stride == 4) && packed.filter == Filter::none;
     if (packed.mode == Mode::triangles) fits = fits && packed.count % 3 == 0;
     if (packed.filter == Filter::octahedral) fits = fits && (stride == 4 || stride == 8);
     if (packed.filter == Filter::quaternion) fits = fits && stride == 8;
@@ -122,15 +134,18 @@ GltfBufferView read_view(const JsonPlace& from, size_t buffer_count) {
     view.size_bytes = from.whole("byteLength", std::nullopt, 1, k_size_limit_bytes);
     if (from.has("byteStride")) view.stride_bytes = uint32_t(from.whole("byteStride", 4, 4, 252));
     if (view.stride_bytes % 4 != 0)
-        from.fault(ErrorId::value_out_of_range, "byteStride " + std::to_string(view.stride_bytes), "a multiple of 4");
+        from.fault(ErrorId::value_out_of_range, "byteStride " + std::to_string(view.stride_bytes),
+                   "a multiple of 4");
     JsonPlace meshopt = from.object("extensions").object("EXT_meshopt_compression");
     if (meshopt.present()) {
         view.meshopt = read_meshopt(meshopt, buffer_count);
         if (view.size_bytes != view.meshopt->count * view.meshopt->stride_bytes)
-            meshopt.fault(ErrorId::value_out_of_range,
-                          "count x byteStride is not the byteLength of the view, " + std::to_string(view.size_bytes),
-                          "equal sizes");
-        view.stride_bytes = view.meshopt->mode == GltfMeshopt::Mode::attributes ? view.meshopt->stride_bytes : 0;
+            meshopt.fault(
+                ErrorId::value_out_of_range,
+                "count x byteStride is not the byteLength of the view, " + std::to_string(view.size_bytes),
+                "equal sizes");
+        view.stride_bytes =
+            view.meshopt->mode == GltfMeshopt::Mode::attributes ? view.meshopt->stride_bytes : 0;
     }
     return view;
 }
@@ -187,7 +202,8 @@ GltfWrap read_wrap(const JsonPlace& sampler, const char* key) {
     if (value == 33071) return GltfWrap::clamp;
     if (value == 33648) return GltfWrap::mirror;
     if (value != 10497)
-        sampler.fault(ErrorId::value_out_of_range, std::string(key) + " " + std::to_string(value), "10497, 33071 or 33648");
+        sampler.fault(ErrorId::value_out_of_range, std::string(key) + " " + std::to_string(value),
+                      "10497, 33071 or 33648");
     return GltfWrap::repeat;
 }
 
@@ -236,7 +252,8 @@ GltfMaterial read_material(const JsonPlace& from, size_t texture_count) {
     material.base_color_linear = glm::clamp(material.base_color_linear, vec4(0.0f), vec4(1.0f));
     std::string mode = from.text("alphaMode").value_or("OPAQUE");
     if (mode != "OPAQUE" && mode != "MASK" && mode != "BLEND")
-        from.fault(ErrorId::value_out_of_range, "alphaMode \"" + mode.substr(0, 40) + "\"", "OPAQUE, MASK or BLEND");
+        from.fault(ErrorId::value_out_of_range, "alphaMode \"" + mode.substr(0, 40) + "\"",
+                   "OPAQUE, MASK or BLEND");
     material.masked = mode != "OPAQUE";
     if (mode == "MASK") material.alpha_cutoff = from.number("alphaCutoff", 0.5f);
     if (material.alpha_cutoff < 0.0f)
@@ -250,7 +267,10 @@ GltfPrimitive read_primitive(const JsonPlace& from, size_t accessor_count, size_
     GltfPrimitive primitive;
     using Mode = GltfPrimitive::Mode;
     uint64_t mode = from.whole("mode", 4, 0, 6);
-    primitive.mode = mode == 4 ? Mode::triangles : mode == 5 ? Mode::strip : mode == 6 ? Mode::fan : Mode::other;
+    primitive.mode = mode == 4   ? Mode::triangles
+                     : mode == 5 ? Mode::strip
+                     : mode == 6 ? Mode::fan
+                                 : Mode::other;
     primitive.indices = from.index("indices", accessor_count);
     primitive.material = from.index("material", material_count);
     primitive.draco = from.object("extensions").has("KHR_draco_mesh_compression");
@@ -272,10 +292,12 @@ mat4 read_transform(const JsonPlace& from) {
     mat4 m(1.0f);
     if (from.has("matrix")) {
         if (parts)
-            from.fault(ErrorId::value_out_of_range, "both a matrix and translation, rotation or scale", "one of the two");
+            from.fault(ErrorId::value_out_of_range, "both a matrix and translation, rotation or scale",
+                       "one of the two");
         from.numbers("matrix", &m[0].x, 16);
         if (m[0].w != 0.0f || m[1].w != 0.0f || m[2].w != 0.0f || m[3].w != 1.0f)
-            from.fault(ErrorId::value_out_of_range, "a matrix whose last row is not 0 0 0 1", "an affine transform");
+            from.fault(ErrorId::value_out_of_range, "a matrix whose last row is not 0 0 0 1",
+                       "an affine transform");
         return m;
     }
     vec3 translation(0.0f), scale(1.0f);
@@ -285,11 +307,13 @@ mat4 read_transform(const JsonPlace& from) {
     from.numbers("scale", &scale.x, 3);
     float length = std::sqrt(glm::dot(q, q));
     if (!(length > 0.9f && length < 1.1f))
-        from.fault(ErrorId::value_out_of_range, "a rotation of length " + std::to_string(length), "a unit quaternion");
+        from.fault(ErrorId::value_out_of_range, "a rotation of length " + std::to_string(length),
+                   "a unit quaternion");
     return compose_transform(translation, q, scale);
 }
 
-GltfNode read_node(const JsonPlace& from, const GltfDocument& document, size_t node_count, size_t skin_count) {
+GltfNode read_node(const JsonPlace& from, const GltfDocument& document, size_t node_count,
+                   size_t skin_count) {
     GltfNode node;
     node.name = from.text("name").value_or("");
     node.local = read_transform(from);
@@ -319,7 +343,8 @@ void check_hierarchy(const GltfDocument& document, std::vector<uint32_t>& parent
         for (uint32_t child : document.nodes[node].children) {
             if (parents[child] != k_gltf_none && child != node)
                 faults.add(ErrorId::value_out_of_range, place(child),
-                           "child of both " + place(parents[child]) + " and " + place(node), "one parent a node");
+                           "child of both " + place(parents[child]) + " and " + place(node),
+                           "one parent a node");
             parents[child] = node;
         }
     // With one parent a node, whoever climbs longer than there are nodes runs in a circle.
@@ -332,12 +357,15 @@ void check_hierarchy(const GltfDocument& document, std::vector<uint32_t>& parent
             node = parents[node];
         }
         if (node != k_gltf_none && !reaches_root[node]) {
+            // Told from its first node, downwards.
+            uint32_t first = node;
+            for (uint32_t at = parents[node]; at != node; at = parents[at]) first = std::min(first, at);
+            node = first;
             std::string circle = place(node);
-            uint32_t steps = 0;
-            for (uint32_t at = parents[node]; steps < 16; at = parents[at], ++steps) {
+            uint32_t at = parents[node];
+            for (uint32_t steps = 0; at != node && steps < 16; at = parents[at], ++steps)
                 circle = place(at) + " -> " + circle;
-                if (at == node) break;
-            }
+            circle = place(node) + (at == node ? " -> " : " -> ... -> ") + circle;
             faults.add(ErrorId::value_out_of_range, place(node), "the node is its own ancestor: " + circle,
                        "a hierarchy without cycles");
             return;
@@ -362,7 +390,8 @@ void read_roots(const JsonPlace& root, GltfDocument& document, const std::vector
             if (node >= document.nodes.size()) continue;  // the fault is noted
             if (parents[node] != k_gltf_none)
                 item.fault(ErrorId::value_out_of_range, "a node with a parent", "roots only");
-            if (seen[node]++) item.fault(ErrorId::value_out_of_range, "the same node twice", "each root once");
+            if (seen[node]++)
+                item.fault(ErrorId::value_out_of_range, "the same node twice", "each root once");
             if (scene == chosen) document.roots.push_back(node);
         }
     }
@@ -374,26 +403,32 @@ Result<GltfDocument> parse_gltf(std::string_view text, const std::string& file) 
     COPPICE_TRY(nlohmann::json json, parse_json(text, file, k_depth_limit));
     JsonFault faults{file, std::nullopt};
     JsonPlace root(&json, "", faults);
-    if (!json.is_object()) return fail(ErrorId::format_unknown, file, "", "not a glTF document", "an object with \"asset\"");
+    if (!json.is_object())
+        return fail(ErrorId::format_unknown, file, "", "not a glTF document", "an object with \"asset\"");
     read_asset(root);
 
     GltfDocument document;
     document.file = file;
-    auto buffers = root.objects("buffers"), views = root.objects("bufferViews"), accessors = root.objects("accessors"),
-         images = root.objects("images"), samplers = root.objects("samplers"), textures = root.objects("textures"),
-         materials = root.objects("materials"), meshes = root.objects("meshes"), nodes = root.objects("nodes"),
-         skins = root.objects("skins");
+    auto buffers = root.objects("buffers"), views = root.objects("bufferViews"),
+         accessors = root.objects("accessors"), images = root.objects("images"),
+         samplers = root.objects("samplers"), textures = root.objects("textures"),
+         materials = root.objects("materials"), meshes = root.objects("meshes"),
+         nodes = root.objects("nodes"), skins = root.objects("skins");
     for (const JsonPlace& item : buffers) document.buffers.push_back(read_buffer(item));
     for (const JsonPlace& item : views) document.views.push_back(read_view(item, buffers.size()));
     for (const JsonPlace& item : accessors) document.accessors.push_back(read_accessor(item, views.size()));
     for (const JsonPlace& item : images) {
-        GltfImage image{item.text("name").value_or(""), item.text("uri"), item.index("bufferView", views.size())};
+        GltfImage image{item.text("name").value_or(""), item.text("uri"),
+                        item.index("bufferView", views.size())};
         if (image.uri.has_value() == (image.view != k_gltf_none))
-            item.fault(ErrorId::value_out_of_range, "both or neither of uri and bufferView", "one of the two");
+            item.fault(ErrorId::value_out_of_range, "both or neither of uri and bufferView",
+                       "one of the two");
         document.images.push_back(std::move(image));
     }
-    for (const JsonPlace& item : textures) document.textures.push_back(read_texture(item, images.size(), samplers));
-    for (const JsonPlace& item : materials) document.materials.push_back(read_material(item, textures.size()));
+    for (const JsonPlace& item : textures)
+        document.textures.push_back(read_texture(item, images.size(), samplers));
+    for (const JsonPlace& item : materials)
+        document.materials.push_back(read_material(item, textures.size()));
     for (const JsonPlace& item : meshes) {
         GltfMesh mesh{item.text("name").value_or(""), {}, read_hints(item)};
         for (const JsonPlace& primitive : item.objects("primitives"))
@@ -401,10 +436,12 @@ Result<GltfDocument> parse_gltf(std::string_view text, const std::string& file) 
         if (mesh.primitives.empty()) item.fault(ErrorId::syntax, "no primitives", "at least one");
         document.meshes.push_back(std::move(mesh));
     }
-    for (const JsonPlace& item : nodes) document.nodes.push_back(read_node(item, document, nodes.size(), skins.size()));
+    for (const JsonPlace& item : nodes)
+        document.nodes.push_back(read_node(item, document, nodes.size(), skins.size()));
     for (const JsonPlace& item : skins) {
         GltfSkin skin;
-        for (const JsonPlace& joint : item.array("joints")) skin.joints.push_back(joint.as_index(nodes.size()));
+        for (const JsonPlace& joint : item.array("joints"))
+            skin.joints.push_back(joint.as_index(nodes.size()));
         if (skin.joints.empty()) item.fault(ErrorId::syntax, "no joints", "at least one");
         skin.inverse_bind_matrices = item.index("inverseBindMatrices", accessors.size());
         document.skins.push_back(std::move(skin));

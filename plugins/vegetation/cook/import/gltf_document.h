@@ -1,7 +1,7 @@
-// What a glTF 2.0 file says, as plain structs: every index inside its array, every number finite and in its range,
-// the node hierarchy a forest. Buffers are not touched here. The JSON is read directly: tinygltf 2.7.0 checks neither
-// indices nor numbers, so each of its values would have to be checked again, without the place it stood at.
-// Source: Khronos glTF 2.0 specification and the extensions named below.
+// What a glTF 2.0 file says, as plain structs: every index inside its array, every number finite and in its
+// range, the node hierarchy a forest. Buffers are not touched here. The JSON is read directly: tinygltf 2.7.0
+// checks neither indices nor numbers, so each of its values would have to be checked again, without the place
+// it stood at. Source: Khronos glTF 2.0 specification and the extensions named below.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -82,7 +82,8 @@ struct GltfTextureUse {
     float rotation_rad = 0;
 };
 
-// extras: {"coppice": {"kind": "points" | "lines", "importance": 2.0, "leaf": true}} of a material, mesh or node.
+// extras: {"coppice": {"kind": "points" | "lines", "importance": 2.0, "leaf": true}} of a material, mesh or
+// node.
 struct GltfHints {
     std::optional<PartKind> kind;
     std::optional<float> importance;
@@ -145,7 +146,8 @@ struct GltfDocument {
     std::vector<GltfMesh> meshes;
     std::vector<GltfNode> nodes;
     std::vector<GltfSkin> skins;
-    std::vector<uint32_t> roots;  // nodes of the default scene, else of the first, else all that have no parent
+    std::vector<uint32_t>
+        roots;  // nodes of the default scene, else of the first, else all that have no parent
 };
 
 // json: the whole text; file: for messages. Errors: syntax, format_unknown (not glTF 2, an unknown required

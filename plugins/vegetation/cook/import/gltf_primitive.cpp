@@ -15,17 +15,20 @@ struct Reader {
     const std::string& place;
 
     tl::unexpected<Error> bad(const std::string& where, std::string fault, std::string remedy) const {
-        return fail(ErrorId::value_out_of_range, document.file, place + where, std::move(fault), std::move(remedy));
+        return fail(ErrorId::value_out_of_range, document.file, place + where, std::move(fault),
+                    std::move(remedy));
     }
 
     Result<std::vector<float>> attribute(uint32_t accessor, const char* name, uint32_t least_components,
                                          uint32_t most_components, uint64_t vertex_count) const {
         const GltfAccessor& a = document.accessors[accessor];
         std::string where = std::string(".attributes.") + name;
-        if (a.components < least_components || a.components > most_components || a.component_type == k_gltf_uint)
+        if (a.components < least_components || a.components > most_components ||
+            a.component_type == k_gltf_uint)
             return bad(where, "an accessor of the wrong type", "what glTF and KHR_mesh_quantization allow");
         if (a.count != vertex_count)
-            return bad(where, std::to_string(a.count) + " values for " + std::to_string(vertex_count) + " positions",
+            return bad(where,
+                       std::to_string(a.count) + " values for " + std::to_string(vertex_count) + " positions",
                        "as many as there are positions");
         return read_floats(document, buffers, accessor);
     }
@@ -46,7 +49,8 @@ std::vector<uint32_t> unroll(const std::vector<uint32_t>& order, GltfPrimitive::
     triangles.reserve((n - 2) * 3);
     for (size_t i = 0; i + 2 < n; ++i) {
         uint32_t corners[3] = {order[i], order[i + 1 + i % 2], order[i + 2 - i % 2]};
-        if (mode == GltfPrimitive::Mode::fan) corners[0] = order[i + 1], corners[1] = order[i + 2], corners[2] = order[0];
+        if (mode == GltfPrimitive::Mode::fan)
+            corners[0] = order[i + 1], corners[1] = order[i + 2], corners[2] = order[0];
         triangles.insert(triangles.end(), corners, corners + 3);
     }
     return triangles;
@@ -118,7 +122,8 @@ Result<ImportMesh> read_primitive_mesh(const GltfDocument& document, const GltfB
     }
     if (use) {
         if (use->texcoord >= primitive.texcoords.size())
-            return reader.bad(".attributes", "the material's texture needs TEXCOORD_" + std::to_string(use->texcoord),
+            return reader.bad(".attributes",
+                              "the material's texture needs TEXCOORD_" + std::to_string(use->texcoord),
                               "texture coordinates");
         uint32_t accessor = primitive.texcoords[use->texcoord];
         COPPICE_TRY(auto uvs, reader.attribute(accessor, "TEXCOORD", 2, 2, vertex_count));
@@ -138,8 +143,8 @@ Result<ImportMesh> read_primitive_mesh(const GltfDocument& document, const GltfB
         for (size_t i = 0; i < order.size(); ++i)
             if (order[i] >= vertex_count)
                 return reader.bad(".indices",
-                                  "index " + std::to_string(order[i]) + " at " + std::to_string(i) + ", but there are " +
-                                      std::to_string(vertex_count) + " vertices",
+                                  "index " + std::to_string(order[i]) + " at " + std::to_string(i) +
+                                      ", but there are " + std::to_string(vertex_count) + " vertices",
                                   "indices below the number of vertices");
     } else {
         order.resize(vertex_count);
@@ -155,25 +160,28 @@ Result<ImportMesh> read_primitive_mesh(const GltfDocument& document, const GltfB
     return mesh;
 }
 
-Result<ImportMesh> transform_mesh(const ImportMesh& mesh, const mat4& plant_from_mesh, const std::string& file,
-                                  const std::string& place) {
+Result<ImportMesh> transform_mesh(const ImportMesh& mesh, const mat4& plant_from_mesh,
+                                  const std::string& file, const std::string& place) {
     ImportMesh placed = mesh;
     mat3 linear(plant_from_mesh);
     // Normals go with the cofactors: the inverse transpose without its division, so flat scales work as well.
-    mat3 cofactor(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]), glm::cross(linear[0], linear[1]));
+    mat3 cofactor(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
+                  glm::cross(linear[0], linear[1]));
     bool mirrored = glm::dot(linear[0], cofactor[0]) < 0.0f;
     if (mirrored) cofactor = cofactor * -1.0f;
     for (size_t i = 0; i < placed.positions_plant.size(); ++i) {
         vec3& p = placed.positions_plant[i];
         p = vec3(plant_from_mesh * vec4(p, 1.0f));
         if (!is_finite(p) || std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)}) > k_position_limit_m)
-            return fail(ErrorId::value_out_of_range, file, place, "position " + std::to_string(i) + " is out of range",
+            return fail(ErrorId::value_out_of_range, file, place,
+                        "position " + std::to_string(i) + " is out of range",
                         "metres, at most 1000 km from the origin");
         vec3& n = placed.normals_plant[i];
         n = normalize_or(cofactor * n, n);
     }
     if (mirrored)
-        for (size_t i = 0; i + 2 < placed.indices.size(); i += 3) std::swap(placed.indices[i + 1], placed.indices[i + 2]);
+        for (size_t i = 0; i + 2 < placed.indices.size(); i += 3)
+            std::swap(placed.indices[i + 1], placed.indices[i + 2]);
     return placed;
 }
 

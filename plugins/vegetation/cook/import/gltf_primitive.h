@@ -1,5 +1,6 @@
-// One primitive of a mesh at one place: attributes checked against each other, strips and fans unrolled, missing
-// normals made (flat, as the specification asks), mirrored transforms turned so that fronts stay fronts.
+// One primitive of a mesh at one place: attributes checked against each other, strips and fans unrolled,
+// missing normals made (flat, as the specification asks), mirrored transforms turned so that fronts stay
+// fronts.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -16,7 +17,7 @@ Result<ImportMesh> read_primitive_mesh(const GltfDocument& document, const GltfB
                                        size_t triangle_limit);
 
 // Errors: value_out_of_range where a position leaves what a float holds.
-Result<ImportMesh> transform_mesh(const ImportMesh& mesh, const mat4& plant_from_mesh, const std::string& file,
-                                  const std::string& place);
+Result<ImportMesh> transform_mesh(const ImportMesh& mesh, const mat4& plant_from_mesh,
+                                  const std::string& file, const std::string& place);
 
 }  // namespace coppice

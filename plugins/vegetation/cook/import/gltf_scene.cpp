@@ -39,7 +39,8 @@ std::vector<mat4> world_transforms(const GltfDocument& document) {
     std::vector<mat4> world(document.nodes.size(), mat4(1.0f));
     for (uint32_t root : roots) world[root] = document.nodes[root].local;
     for (uint32_t node : order_from(document, roots))
-        for (uint32_t child : document.nodes[node].children) world[child] = world[node] * document.nodes[child].local;
+        for (uint32_t child : document.nodes[node].children)
+            world[child] = world[node] * document.nodes[child].local;
     return world;
 }
 
@@ -53,14 +54,16 @@ Result<InstanceRow> read_row(const GltfDocument& document, const GltfBuffers& bu
     InstanceRow row;
     if (accessor == k_gltf_none) return row;
     if (document.accessors[accessor].components != components)
-        return fail(ErrorId::value_out_of_range, document.file, place, "an instance attribute of the wrong type",
+        return fail(ErrorId::value_out_of_range, document.file, place,
+                    "an instance attribute of the wrong type",
                     "VEC3 translations and scales, VEC4 rotations");
     COPPICE_TRY(row.values, read_floats(document, buffers, accessor));
     row.count = document.accessors[accessor].count;
     return row;
 }
 
-Result<std::vector<mat4>> read_instances(const GltfDocument& document, const GltfBuffers& buffers, uint32_t node) {
+Result<std::vector<mat4>> read_instances(const GltfDocument& document, const GltfBuffers& buffers,
+                                         uint32_t node) {
     const GltfInstancing& many = *document.nodes[node].instancing;
     std::string place = place_of(node) + ".extensions.EXT_mesh_gpu_instancing";
     COPPICE_TRY(InstanceRow translation, read_row(document, buffers, many.translation, 3, place));
@@ -69,8 +72,8 @@ Result<std::vector<mat4>> read_instances(const GltfDocument& document, const Glt
     uint64_t count = std::max({translation.count, rotation.count, scale.count});
     for (const InstanceRow* row : {&translation, &rotation, &scale})
         if (row->count != 0 && row->count != count)
-            return fail(ErrorId::value_out_of_range, document.file, place, "instance attributes of different counts",
-                        "one count for all of them");
+            return fail(ErrorId::value_out_of_range, document.file, place,
+                        "instance attributes of different counts", "one count for all of them");
     std::vector<mat4> transforms;
     transforms.reserve(count);
     for (uint64_t i = 0; i < count; ++i) {
@@ -84,15 +87,17 @@ Result<std::vector<mat4>> read_instances(const GltfDocument& document, const Glt
     return transforms;
 }
 
-// A skinned mesh ignores its node's transform. At rest all of its joints move it alike, so the first one says where.
-Result<mat4> rest_pose(const GltfDocument& document, const GltfBuffers& buffers, const std::vector<mat4>& world,
-                       uint32_t skin_index) {
+// A skinned mesh ignores its node's transform. At rest all of its joints move it alike, so the first one says
+// where.
+Result<mat4> rest_pose(const GltfDocument& document, const GltfBuffers& buffers,
+                       const std::vector<mat4>& world, uint32_t skin_index) {
     const GltfSkin& skin = document.skins[skin_index];
     mat4 inverse_bind(1.0f);
     if (skin.inverse_bind_matrices != k_gltf_none) {
         if (document.accessors[skin.inverse_bind_matrices].components != 16)
-            return fail(ErrorId::value_out_of_range, document.file, "skins[" + std::to_string(skin_index) + "]",
-                        "inverseBindMatrices are not MAT4", "an accessor of MAT4");
+            return fail(ErrorId::value_out_of_range, document.file,
+                        "skins[" + std::to_string(skin_index) + "]", "inverseBindMatrices are not MAT4",
+                        "an accessor of MAT4");
         COPPICE_TRY(auto values, read_floats(document, buffers, skin.inverse_bind_matrices));
         for (int i = 0; i < 16; ++i) inverse_bind[i / 4][i % 4] = values[size_t(i)];
     }
@@ -117,12 +122,15 @@ Result<std::vector<GltfPlacement>> place_meshes(const GltfDocument& document, co
             COPPICE_TRY(instances, read_instances(document, buffers, index));
         }
         if (instances.size() > placement_limit - placements.size())
-            return fail(ErrorId::limit_exceeded, document.file, place_of(index), "too many instances of meshes",
-                        "at most " + std::to_string(placement_limit) + " in one plant; a scene of many plants is an eco file");
+            return fail(ErrorId::limit_exceeded, document.file, place_of(index),
+                        "too many instances of meshes",
+                        "at most " + std::to_string(placement_limit) +
+                            " in one plant; a scene of many plants is an eco file");
         for (const mat4& instance : instances) {
             placements.push_back({index, node.mesh, base * instance});
             if (!is_finite(placements.back().plant_from_mesh))
-                return fail(ErrorId::value_out_of_range, document.file, place_of(index), "a transform that is not finite",
+                return fail(ErrorId::value_out_of_range, document.file, place_of(index),
+                            "a transform that is not finite",
                             "translations, rotations and scales of ordinary size");
         }
     }

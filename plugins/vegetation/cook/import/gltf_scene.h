@@ -1,5 +1,5 @@
-// Where the meshes of the default scene stand: the node hierarchy, GPU instances and the rest pose of skins resolved
-// into one transform each.
+// Where the meshes of the default scene stand: the node hierarchy, GPU instances and the rest pose of skins
+// resolved into one transform each.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -14,8 +14,8 @@ struct GltfPlacement {
     mat4 plant_from_mesh;
 };
 
-// In the order of the hierarchy, parents first. Errors: value_out_of_range (a transform that is not finite, instance
-// attributes of different lengths), limit_exceeded (more than placement_limit).
+// In the order of the hierarchy, parents first. Errors: value_out_of_range (a transform that is not finite,
+// instance attributes of different lengths), limit_exceeded (more than placement_limit).
 Result<std::vector<GltfPlacement>> place_meshes(const GltfDocument& document, const GltfBuffers& buffers,
                                                 size_t placement_limit);
 

@@ -20,11 +20,13 @@ int hex_digit(char c) {
 
 bool is_data_uri(std::string_view uri) { return uri.starts_with("data:"); }
 
-Result<std::vector<std::byte>> decode_data_uri(std::string_view uri, const std::string& file, const std::string& place) {
+Result<std::vector<std::byte>> decode_data_uri(std::string_view uri, const std::string& file,
+                                               const std::string& place) {
     constexpr std::string_view k_mark = ";base64,";
     size_t mark = uri.substr(0, 256).find(k_mark);
     if (mark == std::string_view::npos)
-        return fail(ErrorId::syntax, file, place, "a data URI that is not base64", "data:MEDIA-TYPE;base64,DATA");
+        return fail(ErrorId::syntax, file, place, "a data URI that is not base64",
+                    "data:MEDIA-TYPE;base64,DATA");
     std::string_view data = uri.substr(mark + k_mark.size());
     while (!data.empty() && data.back() == '=') data.remove_suffix(1);
 
@@ -38,7 +40,8 @@ Result<std::vector<std::byte>> decode_data_uri(std::string_view uri, const std::
     for (size_t i = 0; i < data.size(); ++i) {
         uint8_t digit = digits[uint8_t(data[i])];
         if (digit == 255)
-            return fail(ErrorId::syntax, file, place, "character " + std::to_string(i) + " of the data is not base64",
+            return fail(ErrorId::syntax, file, place,
+                        "character " + std::to_string(i) + " of the data is not base64",
                         "letters, digits, + and /");
         bits = bits << 6 | digit;
         count += 6;
@@ -47,14 +50,16 @@ Result<std::vector<std::byte>> decode_data_uri(std::string_view uri, const std::
             bytes.push_back(std::byte(bits >> count & 255u));
         }
     }
-    if (count >= 6) return fail(ErrorId::syntax, file, place, "the base64 data ends early", "all of its characters");
+    if (count >= 6)
+        return fail(ErrorId::syntax, file, place, "the base64 data ends early", "all of its characters");
     return bytes;
 }
 
 Result<std::string> resolve_uri(std::string_view uri, const std::string& base_dir, const std::string& file,
                                 const std::string& place) {
     auto refuse = [&](const char* why) {
-        return fail(ErrorId::value_out_of_range, file, place, "the URI \"" + std::string(uri.substr(0, 100)) + "\" " + why,
+        return fail(ErrorId::value_out_of_range, file, place,
+                    "the URI \"" + std::string(uri.substr(0, 100)) + "\" " + why,
                     "a file in the folder of the document or below it");
     };
     std::string path;

@@ -32,9 +32,11 @@ bool names_any(const std::string& name, std::initializer_list<std::string_view> 
 
 bool guess_leaf(const GltfMaterial* material, const std::string& mesh_name, const std::string& node_name) {
     for (const std::string& name : {material ? material->name : std::string(), mesh_name, node_name}) {
-        if (names_any(name, {"leaf", "leav", "needle", "petal", "flower", "blossom", "grass", "frond", "fern", "foliage"}))
+        if (names_any(name, {"leaf", "leav", "needle", "petal", "flower", "blossom", "grass", "frond", "fern",
+                             "foliage"}))
             return true;
-        if (names_any(name, {"bark", "trunk", "branch", "stem", "stalk", "twig", "wood", "root"})) return false;
+        if (names_any(name, {"bark", "trunk", "branch", "stem", "stalk", "twig", "wood", "root"}))
+            return false;
     }
     return material && (material->masked || material->double_sided);
 }
@@ -46,7 +48,8 @@ struct PartKey {
     bool leaf;
     float importance;
     bool operator<(const PartKey& other) const {
-        return std::tie(name, kind, leaf, importance) < std::tie(other.name, other.kind, other.leaf, other.importance);
+        return std::tie(name, kind, leaf, importance) <
+               std::tie(other.name, other.kind, other.leaf, other.importance);
     }
 };
 
@@ -75,14 +78,17 @@ class Importer {
                 COPPICE_TRY(prepared, prepare_mesh(placement.mesh));
                 loaded_mesh = placement.mesh;
             }
-            for (size_t p = 0; p < prepared.size(); ++p) COPPICE_CHECK(place_piece(placement, p, prepared[p]));
+            for (size_t p = 0; p < prepared.size(); ++p)
+                COPPICE_CHECK(place_piece(placement, p, prepared[p]));
         }
         if (skipped_primitives_)
-            log_note("{}: {} primitives of points or lines are left out", document_.file, skipped_primitives_);
+            log_note("{}: {} primitives of points or lines are left out", document_.file,
+                     skipped_primitives_);
         if (triangle_count_ == 0)
-            return fail(ErrorId::value_out_of_range, document_.file, "",
-                        "no triangles; " + std::to_string(placements.size()) + " meshes are placed in the scene",
-                        "at least one mesh of triangles in the default scene");
+            return fail(
+                ErrorId::value_out_of_range, document_.file, "",
+                "no triangles; " + std::to_string(placements.size()) + " meshes are placed in the scene",
+                "at least one mesh of triangles in the default scene");
         return assemble(plant_name);
     }
 
@@ -96,12 +102,14 @@ class Importer {
         return "meshes[" + std::to_string(mesh) + "].primitives[" + std::to_string(primitive) + "]";
     }
 
-    // Of all places together, as far as the file's counts can be believed: the cards' triangle target is dealt out by it.
+    // Of all places together, as far as the file's counts can be believed: the cards' triangle target is
+    // dealt out by it.
     size_t count_masked_triangles(const std::vector<GltfPlacement>& placements) const {
         size_t count = 0;
         for (const GltfPlacement& placement : placements)
             for (const GltfPrimitive& primitive : document_.meshes[placement.mesh].primitives) {
-                if (primitive.material == k_gltf_none || !document_.materials[primitive.material].masked) continue;
+                if (primitive.material == k_gltf_none || !document_.materials[primitive.material].masked)
+                    continue;
                 uint32_t corners = primitive.indices != k_gltf_none ? primitive.indices : primitive.position;
                 if (corners != k_gltf_none) count += document_.accessors[corners].count / 3;
             }
@@ -114,9 +122,11 @@ class Importer {
         const GltfImage& image = document_.images[index];
         bool embedded = !image.uri || is_data_uri(*image.uri);
         std::string label = !image.name.empty() ? image.name : embedded ? std::string() : *image.uri;
-        std::string place = "images[" + std::to_string(index) + "]" + (label.empty() ? "" : " \"" + label + "\"");
+        std::string place =
+            "images[" + std::to_string(index) + "]" + (label.empty() ? "" : " \"" + label + "\"");
         if (!settings_.images)
-            return fail(ErrorId::file_unreadable, document_.file, place, "the picture cannot be read without the images plugin",
+            return fail(ErrorId::file_unreadable, document_.file, place,
+                        "the picture cannot be read without the images plugin",
                         "install the plugin \"images\", or export vertex colours instead of textures");
         Result<Picture> picture = read_picture(image, place);
         if (!picture) {
@@ -126,7 +136,8 @@ class Importer {
             return fail(std::move(error));
         }
         if (picture->empty() || picture->rgba.size() != size_t(picture->width) * picture->height * 4)
-            return fail(ErrorId::file_corrupt, document_.file, place, "the picture is empty", "a picture of at least one texel");
+            return fail(ErrorId::file_corrupt, document_.file, place, "the picture is empty",
+                        "a picture of at least one texel");
         return &pictures_.emplace(index, std::move(*picture)).first->second;
     }
 
@@ -155,8 +166,9 @@ class Importer {
             const GltfPrimitive& primitive = mesh.primitives[p];
             if (primitive.mode == GltfPrimitive::Mode::other) ++skipped_primitives_;
             Prepared& ready = prepared.emplace_back();
-            COPPICE_TRY(ready.mesh, read_primitive_mesh(document_, buffers_, primitive, primitive_place(mesh_index, p),
-                                                        settings_.triangle_limit));
+            COPPICE_TRY(ready.mesh,
+                        read_primitive_mesh(document_, buffers_, primitive, primitive_place(mesh_index, p),
+                                            settings_.triangle_limit));
             find_elements(ready.mesh);
             if (primitive.material == k_gltf_none || ready.mesh.indices.empty()) continue;
             COPPICE_CHECK(apply_alpha(document_.materials[primitive.material], primitive.material, ready));
@@ -169,11 +181,13 @@ class Importer {
         ready.texture = texture;
         // Alpha is texture x factor; what must the texture's be to be opaque?
         float factor = material.base_color_linear.w;
-        float opaque_alpha = !material.masked ? 0.0f : factor > 0.0f ? material.alpha_cutoff / factor * 255.0f : 256.0f;
+        float opaque_alpha = !material.masked ? 0.0f
+                             : factor > 0.0f  ? material.alpha_cutoff / factor * 255.0f
+                                              : 256.0f;
         if (material.masked && material.alpha_cutoff <= 0.0f) opaque_alpha = 0.0f;
         if (opaque_alpha > 255.0f) {
-            log_note("{}: materials[{}] is transparent everywhere; its triangles are left out", document_.file,
-                     material_index);
+            log_note("{}: materials[{}] is transparent everywhere; its triangles are left out",
+                     document_.file, material_index);
             ready = Prepared();
             return {};
         }
@@ -189,13 +203,16 @@ class Importer {
             all_opaque = float(picture->rgba[i]) >= opaque_alpha;
         if (all_opaque) {
             if (whole_materials_.insert(material_index).second)
-                log_warning("{}: materials[{}] \"{}\" is alpha-masked, but images[{}] has no transparent texel: its cards stay whole",
-                        document_.file, material_index, material.name, image);
+                log_warning(
+                    "{}: materials[{}] \"{}\" is alpha-masked, but images[{}] has no transparent texel: its "
+                    "cards stay whole",
+                    document_.file, material_index, material.name, image);
             return {};
         }
         const GltfTexture& wraps = document_.textures[texture];
         AlphaCutSettings share = settings_.alpha_cut;
-        share.triangle_target = uint32_t(uint64_t(share.triangle_target) * ready.mesh.triangle_count() / masked_triangle_count_);
+        share.triangle_target =
+            uint32_t(uint64_t(share.triangle_target) * ready.mesh.triangle_count() / masked_triangle_count_);
         ready.mesh = cut_alpha(ready.mesh, *picture, wraps.wrap_s, wraps.wrap_t, opaque_alpha, share);
         ready.texture = k_gltf_none;
         return {};
@@ -205,8 +222,10 @@ class Importer {
         const GltfNode& node = document_.nodes[placement.node];
         const GltfMesh& mesh = document_.meshes[placement.mesh];
         uint32_t material_index = mesh.primitives[primitive_index].material;
-        const GltfMaterial* material = material_index == k_gltf_none ? nullptr : &document_.materials[material_index];
-        PartKey key{material ? material->name : "", PartKind::automatic, guess_leaf(material, mesh.name, node.name), 0.0f};
+        const GltfMaterial* material =
+            material_index == k_gltf_none ? nullptr : &document_.materials[material_index];
+        PartKey key{material ? material->name : "", PartKind::automatic,
+                    guess_leaf(material, mesh.name, node.name), 0.0f};
         if (key.name.empty()) key.name = !mesh.name.empty() ? mesh.name : node.name;
         if (key.name.empty()) key.name = "part";
         for (const GltfHints* hints : {material ? &material->hints : nullptr, &mesh.hints, &node.hints}) {
@@ -235,7 +254,8 @@ class Importer {
             return fail(ErrorId::limit_exceeded, document_.file, place, "too many triangles",
                         "at most " + std::to_string(settings_.triangle_limit) + " in a plant");
         triangle_count_ += prepared.mesh.triangle_count();
-        COPPICE_TRY(ImportMesh mesh, transform_mesh(prepared.mesh, placement.plant_from_mesh, document_.file, place));
+        COPPICE_TRY(ImportMesh mesh,
+                    transform_mesh(prepared.mesh, placement.plant_from_mesh, document_.file, place));
         pieces_.push_back({std::move(mesh), find_part(placement, primitive), prepared.texture});
         return {};
     }
@@ -259,8 +279,10 @@ class Importer {
                 const GltfTexture& texture = document_.textures[piece.texture];
                 auto pyramid = pyramids.find(piece.texture);
                 if (pyramid == pyramids.end())
-                    pyramid = pyramids.emplace(piece.texture, TexturePyramid(pictures_.at(texture.image), texture.wrap_s,
-                                                                             texture.wrap_t, 0)).first;
+                    pyramid = pyramids
+                                  .emplace(piece.texture, TexturePyramid(pictures_.at(texture.image),
+                                                                         texture.wrap_s, texture.wrap_t, 0))
+                                  .first;
                 auto colors = average_colors(pyramid->second, piece.mesh.uvs, piece.mesh.indices);
                 for (size_t v = 0; v < colors.size(); ++v) piece.mesh.colors_linear[v] *= colors[v];
             }
@@ -270,7 +292,8 @@ class Importer {
                 part.vertices.push_back({piece.mesh.positions_plant[v], piece.mesh.normals_plant[v],
                                          glm::clamp(piece.mesh.colors_linear[v], vec3(0.0f), vec3(1.0f))});
             for (uint32_t index : piece.mesh.indices) part.indices.push_back(first_vertex + index);
-            for (uint32_t element : piece.mesh.elements) elements[piece.part].push_back(element_counts[piece.part] + element);
+            for (uint32_t element : piece.mesh.elements)
+                elements[piece.part].push_back(element_counts[piece.part] + element);
             element_counts[piece.part] += piece.mesh.element_count;
             piece.mesh = ImportMesh();
         }
@@ -279,8 +302,10 @@ class Importer {
         return PlantDescription{plant_name, std::move(parts_)};
     }
 
-    // Triangles of one element next to each other, elements in order. Elements that lost all their triangles go.
-    static void group_by_element(PartDescription& part, const std::vector<uint32_t>& elements, uint32_t element_count) {
+    // Triangles of one element next to each other, elements in order. Elements that lost all their triangles
+    // go.
+    static void group_by_element(PartDescription& part, const std::vector<uint32_t>& elements,
+                                 uint32_t element_count) {
         std::vector<uint32_t> first(element_count + 1, 0);
         for (uint32_t element : elements) ++first[element + 1];
         for (uint32_t e = 0; e < element_count; ++e) first[e + 1] += first[e];
@@ -314,26 +339,30 @@ Result<PlantDescription> import_gltf_memory(std::span<const std::byte> bytes, co
                                             const std::string& base_dir, const ImportSettings& settings) {
     try {
         if (bytes.size() > settings.size_limit_bytes)
-            return fail(ErrorId::limit_exceeded, name, "", "the file has " + std::to_string(bytes.size()) + " bytes",
+            return fail(ErrorId::limit_exceeded, name, "",
+                        "the file has " + std::to_string(bytes.size()) + " bytes",
                         "at most " + std::to_string(settings.size_limit_bytes));
         GlbChunks chunks{std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()), {}};
         if (is_glb(bytes)) {
             COPPICE_TRY(chunks, split_glb(bytes, name));
         }
         COPPICE_TRY(GltfDocument document, parse_gltf(chunks.json, name));
-        COPPICE_TRY(GltfBuffers buffers, GltfBuffers::load(document, chunks.binary, base_dir, settings.size_limit_bytes));
+        COPPICE_TRY(GltfBuffers buffers,
+                    GltfBuffers::load(document, chunks.binary, base_dir, settings.size_limit_bytes));
         return Importer(std::move(document), std::move(buffers), base_dir, settings)
             .run(std::filesystem::path(name).stem().string());
     } catch (const std::bad_alloc&) {
         return fail(ErrorId::limit_exceeded, name, "", "not enough memory to import it", "a smaller file");
     } catch (const std::exception& thrown) {
-        return fail(ErrorId::file_corrupt, name, "", std::string("cannot be imported: ") + thrown.what(), "a valid glTF file");
+        return fail(ErrorId::file_corrupt, name, "", std::string("cannot be imported: ") + thrown.what(),
+                    "a valid glTF file");
     }
 }
 
 Result<PlantDescription> import_gltf(const std::string& path, const ImportSettings& settings) {
     COPPICE_TRY(MappedFile file, MappedFile::open(path));
-    return import_gltf_memory(file.bytes(), path, std::filesystem::path(path).parent_path().string(), settings);
+    return import_gltf_memory(file.bytes(), path, std::filesystem::path(path).parent_path().string(),
+                              settings);
 }
 
 }  // namespace coppice

@@ -8,11 +8,12 @@ namespace coppice {
 
 struct ImportMesh {
     std::vector<vec3> positions_plant;
-    std::vector<vec3> normals_plant;   // unit
-    std::vector<vec3> colors_linear;   // base colour factor and vertex colours, textures not applied
-    std::vector<vec2> uvs;             // texture transform applied; empty: no texture
-    std::vector<uint32_t> indices;     // three a triangle
-    std::vector<uint32_t> elements;    // of each triangle: which connected piece (one leaf, one card) it belongs to
+    std::vector<vec3> normals_plant;  // unit
+    std::vector<vec3> colors_linear;  // base colour factor and vertex colours, textures not applied
+    std::vector<vec2> uvs;            // texture transform applied; empty: no texture
+    std::vector<uint32_t> indices;    // three a triangle
+    std::vector<uint32_t>
+        elements;  // of each triangle: which connected piece (one leaf, one card) it belongs to
     uint32_t element_count = 0;
     size_t triangle_count() const { return indices.size() / 3; }
 };

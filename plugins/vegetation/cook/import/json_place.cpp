@@ -19,7 +19,8 @@ Result<nlohmann::json> parse_json(std::string_view text, const std::string& file
         } else if (c == '{' || c == '[') {
             if (++depth > depth_limit)
                 return fail(ErrorId::limit_exceeded, file, "byte " + std::to_string(i),
-                            "JSON nested deeper than " + std::to_string(depth_limit) + " levels", "a flatter file");
+                            "JSON nested deeper than " + std::to_string(depth_limit) + " levels",
+                            "a flatter file");
         } else if (c == '}' || c == ']') {
             --depth;
         }
@@ -27,10 +28,11 @@ Result<nlohmann::json> parse_json(std::string_view text, const std::string& file
     try {
         return nlohmann::json::parse(text.begin(), text.end());
     } catch (const nlohmann::json::parse_error& thrown) {
-        return fail(ErrorId::syntax, file, "byte " + std::to_string(thrown.byte), "not JSON: the text does not parse",
-                    "a well-formed JSON document");
+        return fail(ErrorId::syntax, file, "byte " + std::to_string(thrown.byte),
+                    "not JSON: the text does not parse", "a well-formed JSON document");
     } catch (const std::exception&) {
-        return fail(ErrorId::syntax, file, "", "not JSON: the text does not parse", "a well-formed JSON document");
+        return fail(ErrorId::syntax, file, "", "not JSON: the text does not parse",
+                    "a well-formed JSON document");
     }
 }
 
@@ -114,7 +116,8 @@ std::optional<float> JsonPlace::as_number() const {
     return std::nullopt;
 }
 
-uint64_t JsonPlace::whole(const char* key, std::optional<uint64_t> otherwise, uint64_t least, uint64_t most) const {
+uint64_t JsonPlace::whole(const char* key, std::optional<uint64_t> otherwise, uint64_t least,
+                          uint64_t most) const {
     JsonPlace member = at(key);
     if (member.value_)
         if (auto value = member.as_whole(least, most)) return *value;
@@ -161,7 +164,8 @@ uint32_t JsonPlace::as_index(size_t count) const {
     auto value = as_whole(0, UINT32_MAX - 1);
     if (!value) return 0;
     if (*value < count) return uint32_t(*value);
-    fault(ErrorId::value_out_of_range, "index " + std::to_string(*value) + ", but there are " + std::to_string(count),
+    fault(ErrorId::value_out_of_range,
+          "index " + std::to_string(*value) + ", but there are " + std::to_string(count),
           count == 0 ? "leave it out" : "an index from 0 to " + std::to_string(count - 1));
     return 0;
 }

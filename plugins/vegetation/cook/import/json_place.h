@@ -1,5 +1,6 @@
-// A JSON value together with where it stands, so that a fault can be named. The first fault found in a document is kept,
-// and reading goes on with harmless values: parsers need no branch a field, and look at the fault once, at the end.
+// A JSON value together with where it stands, so that a fault can be named. The first fault found in a
+// document is kept, and reading goes on with harmless values: parsers need no branch a field, and look at the
+// fault once, at the end.
 #pragma once
 #include <cstdint>
 #include <nlohmann/json.hpp>
@@ -19,7 +20,8 @@ struct JsonFault {
     }
 };
 
-// Text to JSON. Refuses nesting deeper than depth_limit before the parser sees it. Errors: syntax, limit_exceeded.
+// Text to JSON. Refuses nesting deeper than depth_limit before the parser sees it. Errors: syntax,
+// limit_exceeded.
 Result<nlohmann::json> parse_json(std::string_view text, const std::string& file, int depth_limit);
 
 class JsonPlace {

@@ -26,10 +26,13 @@ struct Step {
     uint32_t version;
     bool vanish;
     dvec2 at;
-    bool operator>(const Step& other) const { return std::tie(cost, b, version) > std::tie(other.cost, other.b, other.version); }
+    bool operator>(const Step& other) const {
+        return std::tie(cost, b, version) > std::tie(other.cost, other.b, other.version);
+    }
 };
 
-// Corners and the segments that start at them, by cell. Entries of dead corners are skipped and swept out when met.
+// Corners and the segments that start at them, by cell. Entries of dead corners are skipped and swept out
+// when met.
 class CornerGrid {
   public:
     CornerGrid(const OutlineLimits& limits, size_t corner_count) : low_(limits.low) {
@@ -56,14 +59,21 @@ class CornerGrid {
     std::vector<std::vector<uint32_t>> cells_;
 };
 
+dvec2 direction(dvec2 from, dvec2 to) {
+    double length = glm::length(to - from);
+    return length > 0.0 ? (to - from) / length : dvec2(0.0);
+}
+
 bool crosses(dvec2 a, dvec2 b, dvec2 c, dvec2 d) {
     double c_side = cross_at(a, b, c), d_side = cross_at(a, b, d);
     double a_side = cross_at(c, d, a), b_side = cross_at(c, d, b);
     if ((c_side > 0) == (d_side > 0) && c_side != 0 && d_side != 0) return false;
     if ((a_side > 0) == (b_side > 0) && a_side != 0 && b_side != 0) return false;
     // On one line: only where the spans meet.
-    return std::max(std::min(a.x, b.x), std::min(c.x, d.x)) <= std::min(std::max(a.x, b.x), std::max(c.x, d.x)) &&
-           std::max(std::min(a.y, b.y), std::min(c.y, d.y)) <= std::min(std::max(a.y, b.y), std::max(c.y, d.y));
+    return std::max(std::min(a.x, b.x), std::min(c.x, d.x)) <=
+               std::min(std::max(a.x, b.x), std::max(c.x, d.x)) &&
+           std::max(std::min(a.y, b.y), std::min(c.y, d.y)) <=
+               std::min(std::max(a.y, b.y), std::max(c.y, d.y));
 }
 
 bool in_triangle(dvec2 p, dvec2 a, dvec2 b, dvec2 c) {
@@ -93,7 +103,8 @@ class Simplifier {
             Step step = steps_.top();
             steps_.pop();
             if (!corners_[step.b].alive || corners_[step.b].version != step.version) continue;
-            if (displaced_area_ + step.cost > limits_.displaced_area && alive_count_ <= limits_.corner_count) break;
+            if (displaced_area_ + step.cost > limits_.displaced_area && alive_count_ <= limits_.corner_count)
+                break;
             if (step.vanish)
                 vanish(step);
             else if (is_free(step))
@@ -112,7 +123,8 @@ class Simplifier {
     }
 
     void insert(uint32_t i) {
-        grid_.for_cells(corners_[i].at, corners_[corners_[i].next].at, [i](std::vector<uint32_t>& cell) { cell.push_back(i); });
+        grid_.for_cells(corners_[i].at, corners_[corners_[i].next].at,
+                        [i](std::vector<uint32_t>& cell) { cell.push_back(i); });
     }
 
     // The step at b, whatever stands in its way.
@@ -142,7 +154,8 @@ class Simplifier {
     }
 
     void consider(Step& best, dvec2 E, double cost) const {
-        if (!(E.x >= limits_.low.x && E.y >= limits_.low.y && E.x <= limits_.high.x && E.y <= limits_.high.y)) return;
+        if (!(E.x >= limits_.low.x && E.y >= limits_.low.y && E.x <= limits_.high.x && E.y <= limits_.high.y))
+            return;
         if (cost < best.cost) {
             best.cost = cost;
             best.at = E;
@@ -153,7 +166,9 @@ class Simplifier {
     static double displaced(dvec2 E, dvec2 B, dvec2 C, dvec2 D) {
         double b_side = cross_at(E, D, B), c_side = cross_at(E, D, C);
         double whole = std::fabs(cross_at(E, B, C));
-        return (b_side > 0) != (c_side > 0) && b_side != c_side ? whole * std::fabs(b_side / (b_side - c_side)) : whole;
+        return (b_side > 0) != (c_side > 0) && b_side != c_side
+                   ? whole * std::fabs(b_side / (b_side - c_side))
+                   : whole;
     }
 
     // Whether the new pieces cross nothing, and no corner lies in what changes sides.
@@ -173,7 +188,8 @@ class Simplifier {
                 if (!free || i == b || i == c || i == a) continue;  // a's piece is one that goes
                 uint32_t next = corners_[i].next;
                 dvec2 P = corners_[i].at, Q = corners_[next].at;
-                if (i != d && (in_triangle(P, E, B, C) || in_triangle(P, E, C, D) || in_triangle(P, A, B, E))) free = false;
+                if (i != d && (in_triangle(P, E, B, C) || in_triangle(P, E, C, D) || in_triangle(P, A, B, E)))
+                    free = false;
                 // Neighbours share an end with a new piece; they may not turn back onto it.
                 if (i != d && next != a && (crosses(A, E, P, Q) || crosses(E, D, P, Q))) free = false;
                 if (i == d && next != a && (crosses(A, E, P, Q) || folds(E, D, Q))) free = false;
@@ -217,21 +233,23 @@ class Simplifier {
         alive_count_ -= 3;
     }
 
-    // Moves all outlines a little, in or out, until the area is again what it was. Twice, because corners round it off.
+    // Moves all outlines a little, in or out, until the area is again what it was. Twice, because corners
+    // round it off.
     void give_back(std::vector<Ring>& rings) const {
         for (int round = 0; round < 2; ++round) {
             double missing = total_area_, length = 0.0;
             for (const Ring& ring : rings) {
                 missing -= signed_area(ring);
-                for (size_t i = 0; i < ring.size(); ++i) length += glm::length(ring[(i + 1) % ring.size()] - ring[i]);
+                for (size_t i = 0; i < ring.size(); ++i)
+                    length += glm::length(ring[(i + 1) % ring.size()] - ring[i]);
             }
             if (!(length > 0.0)) return;
             double outward = missing / length;
             for (Ring& ring : rings) {
                 Ring old = ring;
                 for (size_t i = 0; i < old.size(); ++i) {
-                    dvec2 in = glm::normalize(old[i] - old[(i + old.size() - 1) % old.size()]);
-                    dvec2 out = glm::normalize(old[(i + 1) % old.size()] - old[i]);
+                    dvec2 in = direction(old[(i + old.size() - 1) % old.size()], old[i]);
+                    dvec2 out = direction(old[i], old[(i + 1) % old.size()]);
                     dvec2 both(in.y + out.y, -in.x - out.x);  // sum of the two sides' outward normals
                     ring[i] += both * (outward / std::max(1.0 + glm::dot(in, out), 0.25));
                     ring[i] = glm::clamp(ring[i], limits_.low, limits_.high);
@@ -243,7 +261,8 @@ class Simplifier {
     std::vector<Ring> collect() const {
         std::vector<Ring> rings;
         for (size_t r = 0; r < firsts_.size(); ++r) {
-            uint32_t end = r + 1 < firsts_.size() ? firsts_[r + 1] : uint32_t(corners_.size()), start = firsts_[r];
+            uint32_t end = r + 1 < firsts_.size() ? firsts_[r + 1] : uint32_t(corners_.size()),
+                     start = firsts_[r];
             while (start < end && !corners_[start].alive) ++start;
             if (start == end) continue;
             Ring& ring = rings.emplace_back();

@@ -25,7 +25,8 @@ int64_t wrap_texel(int64_t i, int64_t size, GltfWrap wrap) {
     return i < size ? i : period - 1 - i;
 }
 
-TexturePyramid::TexturePyramid(const Picture& picture, GltfWrap wrap_s, GltfWrap wrap_t, uint32_t opaque_alpha)
+TexturePyramid::TexturePyramid(const Picture& picture, GltfWrap wrap_s, GltfWrap wrap_t,
+                               uint32_t opaque_alpha)
     : width_(picture.width), height_(picture.height), wrap_s_(wrap_s), wrap_t_(wrap_t), base_(picture.rgba) {
     for (size_t i = 3; i < base_.size(); i += 4) base_[i] = base_[i] >= opaque_alpha ? 255 : 0;
     for (uint32_t w = width_, h = height_; w > 1 || h > 1;) {
@@ -41,7 +42,8 @@ TexturePyramid::TexturePyramid(const Picture& picture, GltfWrap wrap_s, GltfWrap
             for (uint32_t x = 0; x < level.width; ++x)
                 level.texels[size_t(y) * level.width + x] =
                     (fetch(2 * x, 2 * y) + fetch(2 * x + 1, 2 * y) + fetch(2 * x, 2 * y + 1) +
-                     fetch(2 * x + 1, 2 * y + 1)) * 0.25f;
+                     fetch(2 * x + 1, 2 * y + 1)) *
+                    0.25f;
         w = level.width;
         h = level.height;
         levels_.push_back(std::move(level));

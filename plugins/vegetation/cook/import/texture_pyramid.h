@@ -1,5 +1,5 @@
-// A base-colour texture as averages: linear colour of its opaque texels only, at every power of two, so that nothing of
-// what lies behind the cut-out bleeds into a leaf.
+// A base-colour texture as averages: linear colour of its opaque texels only, at every power of two, so that
+// nothing of what lies behind the cut-out bleeds into a leaf.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -19,7 +19,8 @@ class TexturePyramid {
 
     uint32_t width() const { return width_; }
     uint32_t height() const { return height_; }
-    // xyz: linear colour times weight; w: opaque share of the texel at uv, level 0 being the texture itself. No filter.
+    // xyz: linear colour times weight; w: opaque share of the texel at uv, level 0 being the texture itself.
+    // No filter.
     vec4 texel(vec2 uv, uint32_t level) const;
     uint32_t level_count() const { return uint32_t(levels_.size()) + 1; }
     // Of the opaque texels around uv, from the finest level that has any. Black if the texture has none.
@@ -34,7 +35,7 @@ class TexturePyramid {
 
     uint32_t width_, height_;
     GltfWrap wrap_s_, wrap_t_;
-    std::vector<uint8_t> base_;   // sRGB and 0 or 255: level 0 is the largest by far
+    std::vector<uint8_t> base_;  // sRGB and 0 or 255: level 0 is the largest by far
     std::vector<Level> levels_;  // from level 1 on
 };
 

@@ -10,8 +10,8 @@ double signed_area(const Ring& ring) {
 
 std::vector<Ring> trace_outline(const AlphaGrid& grid, float threshold) {
     uint32_t width = uint32_t(grid.xs.size()), height = uint32_t(grid.ys.size());
-    // A crossing is named by the grid edge it lies on: 2 x node, + 0 towards x + 1, + 1 towards y + 1. Every crossing is
-    // left by exactly one piece of outline.
+    // A crossing is named by the grid edge it lies on: 2 x node, + 0 towards x + 1, + 1 towards y + 1. Every
+    // crossing is left by exactly one piece of outline.
     constexpr uint32_t k_none = UINT32_MAX;
     std::vector<uint32_t> next(size_t(width) * height * 2, k_none);
     auto value = [&](uint32_t x, uint32_t y) { return grid.values[size_t(y) * width + x]; };
@@ -26,9 +26,11 @@ std::vector<Ring> trace_outline(const AlphaGrid& grid, float threshold) {
             uint32_t edges[4] = {node, node + 3, node + 2 * width, node + 1};
             bool joined = false;
             if (corners == 5 || corners == 10)
-                joined = (value(x, y) + value(x + 1, y) + value(x + 1, y + 1) + value(x, y + 1)) * 0.25f >= threshold;
-            // Counter-clockwise round the cell, the outline enters the cell where corner e is inside and e + 1 is not
-            // (edge e) and leaves where it comes back inside. Separate corners close at once, joined ones later.
+                joined = (value(x, y) + value(x + 1, y) + value(x + 1, y + 1) + value(x, y + 1)) * 0.25f >=
+                         threshold;
+            // Counter-clockwise round the cell, the outline enters the cell where corner e is inside and e +
+            // 1 is not (edge e) and leaves where it comes back inside. Separate corners close at once, joined
+            // ones later.
             for (uint32_t e = 0; e < 4; ++e) {
                 if (!(corners >> e & 1u) || (corners >> ((e + 1) % 4) & 1u)) continue;
                 uint32_t back = (e + 1) % 4;
@@ -41,7 +43,8 @@ std::vector<Ring> trace_outline(const AlphaGrid& grid, float threshold) {
         uint32_t node = edge / 2, x0 = node % width, y0 = node / width;
         uint32_t x1 = x0 + (edge % 2 == 0), y1 = y0 + edge % 2;
         double a = value(x0, y0), b = value(x1, y1), t = (double(threshold) - a) / (b - a);
-        return dvec2(grid.xs[x0] + (grid.xs[x1] - grid.xs[x0]) * t, grid.ys[y0] + (grid.ys[y1] - grid.ys[y0]) * t);
+        return dvec2(grid.xs[x0] + (grid.xs[x1] - grid.xs[x0]) * t,
+                     grid.ys[y0] + (grid.ys[y1] - grid.ys[y0]) * t);
     };
     std::vector<Ring> rings;
     for (uint32_t start = 0; start < next.size(); ++start) {

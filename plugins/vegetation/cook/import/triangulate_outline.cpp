@@ -63,7 +63,8 @@ class Triangulator {
         auto less = [this](uint32_t a, uint32_t b) {
             return at(a).x != at(b).x ? at(a).x < at(b).x : at(a).y != at(b).y ? at(a).y < at(b).y : a < b;
         };
-        for (Loop& hole : holes) std::rotate(hole.begin(), std::min_element(hole.begin(), hole.end(), less), hole.end());
+        for (Loop& hole : holes)
+            std::rotate(hole.begin(), std::min_element(hole.begin(), hole.end(), less), hole.end());
         std::sort(holes.begin(), holes.end(), [&](const Loop& a, const Loop& b) { return less(a[0], b[0]); });
         for (const Loop& hole : holes) {
             size_t bridge = find_bridge(loop, at(hole[0]));
@@ -91,7 +92,8 @@ class Triangulator {
             best = a.x < b.x ? i : j;
         }
         if (hit_x == -INFINITY) return nearest(loop, p);
-        // Corners in the triangle between p, the hit and the edge's end may hide it: take the one at the flattest angle.
+        // Corners in the triangle between p, the hit and the edge's end may hide it: take the one at the
+        // flattest angle.
         dvec2 hit(hit_x, p.y), end = at(loop[best]);
         double flattest = INFINITY;
         size_t seen = best;
@@ -120,7 +122,8 @@ class Triangulator {
 
     // Whether the way from corner i of the loop to p starts on the loop's inside.
     bool points_inside(const Loop& loop, size_t i, dvec2 p) const {
-        dvec2 before = at(loop[(i + loop.size() - 1) % loop.size()]), here = at(loop[i]), after = at(loop[(i + 1) % loop.size()]);
+        dvec2 before = at(loop[(i + loop.size() - 1) % loop.size()]), here = at(loop[i]),
+              after = at(loop[(i + 1) % loop.size()]);
         bool left_of_in = cross_at(before, here, p) >= 0, left_of_out = cross_at(here, after, p) >= 0;
         return cross_at(before, here, after) >= 0 ? left_of_in && left_of_out : left_of_in || left_of_out;
     }
@@ -130,15 +133,18 @@ class Triangulator {
         return (ab >= 0 && bc >= 0 && ca >= 0) || (ab <= 0 && bc <= 0 && ca <= 0);
     }
 
-    bool is_ear(const std::vector<uint32_t>& next, const std::vector<uint32_t>& previous, const Loop& loop, uint32_t i) const {
+    bool is_ear(const std::vector<uint32_t>& next, const std::vector<uint32_t>& previous, const Loop& loop,
+                uint32_t i) const {
         dvec2 a = at(loop[previous[i]]), b = at(loop[i]), c = at(loop[next[i]]);
         if (cross_at(a, b, c) <= 0.0) return false;
         dvec2 low = glm::min(a, glm::min(b, c)), high = glm::max(a, glm::max(b, c));
         for (uint32_t j = next[next[i]]; j != previous[i]; j = next[j]) {
             dvec2 p = at(loop[j]);
-            if (p.x < low.x || p.y < low.y || p.x > high.x || p.y > high.y || p == a || p == b || p == c) continue;
+            if (p.x < low.x || p.y < low.y || p.x > high.x || p.y > high.y || p == a || p == b || p == c)
+                continue;
             // Only reflex corners can be in the way.
-            if (cross_at(at(loop[previous[j]]), p, at(loop[next[j]])) <= 0.0 && in_triangle(p, a, b, c)) return false;
+            if (cross_at(at(loop[previous[j]]), p, at(loop[next[j]])) <= 0.0 && in_triangle(p, a, b, c))
+                return false;
         }
         return true;
     }
@@ -153,9 +159,11 @@ class Triangulator {
         uint32_t i = 0, left = n, waited = 0;
         while (left > 2) {
             bool flat = cross_at(at(loop[previous[i]]), at(loop[i]), at(loop[next[i]])) == 0.0;
-            // After a whole round without an ear the outline is degenerate there: cut all the same, areas stay right.
+            // After a whole round without an ear the outline is degenerate there: cut all the same, areas
+            // stay right.
             if (flat || waited > left || is_ear(next, previous, loop, i)) {
-                if (!flat) mesh_.indices.insert(mesh_.indices.end(), {loop[previous[i]], loop[i], loop[next[i]]});
+                if (!flat)
+                    mesh_.indices.insert(mesh_.indices.end(), {loop[previous[i]], loop[i], loop[next[i]]});
                 next[previous[i]] = next[i];
                 previous[next[i]] = previous[i];
                 --left;
@@ -191,8 +199,11 @@ class Triangulator {
             bool any = false;
             for (size_t s = 0; s + 1 < sides.size(); ++s) {
                 const Side &one = sides[s], &two = sides[s + 1];
-                if (one.low != two.low || one.high != two.high || turned[one.triangle] || turned[two.triangle]) continue;
-                if (s + 2 < sides.size() && sides[s + 2].low == one.low && sides[s + 2].high == one.high) continue;
+                if (one.low != two.low || one.high != two.high || turned[one.triangle] ||
+                    turned[two.triangle])
+                    continue;
+                if (s + 2 < sides.size() && sides[s + 2].low == one.low && sides[s + 2].high == one.high)
+                    continue;
                 if (s > 0 && sides[s - 1].low == one.low && sides[s - 1].high == one.high) continue;
                 if (!turn(one, two)) continue;
                 turned[one.triangle] = turned[two.triangle] = 1;

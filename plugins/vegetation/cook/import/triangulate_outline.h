@@ -1,5 +1,5 @@
-// Rings to triangles: holes joined to what surrounds them, ears cut, then edges turned until the triangles are as round
-// as the outline allows (Delaunay), because each will carry one colour a corner.
+// Rings to triangles: holes joined to what surrounds them, ears cut, then edges turned until the triangles
+// are as round as the outline allows (Delaunay), because each will carry one colour a corner.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -12,8 +12,8 @@ struct FlatMesh {
     std::vector<uint32_t> indices;  // three a triangle, counter-clockwise
 };
 
-// rings: outer ones positive, holes negative, none crossing another (simplify_outline). Triangles without area are
-// left out; the sum of their areas is that of the rings.
+// rings: outer ones positive, holes negative, none crossing another (simplify_outline). Triangles without
+// area are left out; the sum of their areas is that of the rings.
 FlatMesh triangulate_outline(const std::vector<Ring>& rings);
 
 }  // namespace coppice

@@ -1,6 +1,7 @@
 #include "plugins/vegetation/cook/trace_lines.h"
 
 #include <algorithm>
+#include <span>
 #include "plugins/vegetation/cook/triangle_areas.h"
 #include "runtime/core/jobs.h"
 
@@ -112,6 +113,32 @@ float choose_line_length(const std::vector<std::vector<Cut>>& bends, size_t line
     }
 }
 
+// What the triangles around a segment look like.
+struct Surroundings {
+    double area = 0.0;
+    dvec3 color{0}, normal{0};  // area-weighted sums
+};
+
+double stem_area(const std::vector<Surroundings>& around, const StemRange& stem) {
+    double area_m2 = 0.0;
+    for (uint32_t s = stem.first; s < stem.last; ++s) area_m2 += around[s].area;
+    return area_m2;
+}
+
+// From radii to widths whose lines cover the stem's surface: the skeleton knows the taper, the mesh how much there is.
+void widen_by_area(std::span<TracedLine> stem, double area_m2) {
+    double covered = 0.0, length_m = 0.0;
+    for (const TracedLine& line : stem) {
+        vec3 along = line.end_plant - line.begin_plant;
+        double line_m = double(std::sqrt(glm::dot(along, along)));
+        covered += double(line.width_share) * line_m;
+        length_m += line_m;
+    }
+    for (TracedLine& line : stem)
+        line.width_share = covered > 0.0 ? float(double(line.width_share) * (area_m2 / covered))
+                                         : float(area_m2 / std::max(length_m, 1e-30));
+}
+
 // From widths in m to shares of the mean, which stays 1 over the length after the clamp.
 void share_widths(TracedLines& traced) {
     auto scale_to_mean = [&traced] {
@@ -128,12 +155,6 @@ void share_widths(TracedLines& traced) {
     for (TracedLine& line : traced.lines) line.width_share = std::clamp(line.width_share, 0.1f, 6.0f);
     scale_to_mean();
 }
-
-// What the triangles around a segment look like.
-struct Surroundings {
-    double area = 0.0;
-    dvec3 color{0}, normal{0};  // area-weighted sums
-};
 
 }  // namespace
 
@@ -179,13 +200,12 @@ TracedLines trace_lines(const PartDescription& part, const TracedSkeleton& skele
             // All segments the piece touches.
             Surroundings sum;
             dvec3 skeleton_color(0);
-            double skeleton_length = 0.0, area_m2 = 0.0;
+            double skeleton_length = 0.0, radius_length = 0.0;
             for (;;) {
-                // Of a segment's surface, the share of its length that lies on this piece.
                 float length = length_of(segments[at]);
-                float shared = std::min(before + length, cuts[piece + 1].along_m) -
-                               std::max(before, cuts[piece].along_m);
-                area_m2 += around[at].area * double(std::clamp(shared / length, 0.0f, 1.0f));
+                float shared = std::min(before + length, cuts[piece + 1].along_m) - std::max(before, cuts[piece].along_m);
+                float radius = 0.5f * (segments[at].begin_radius_m + segments[at].end_radius_m);
+                radius_length += double(std::max(shared, 0.0f)) * double(radius);
                 sum.area += around[at].area;
                 sum.color += around[at].color;
                 sum.normal += around[at].normal;
@@ -204,10 +224,11 @@ TracedLines trace_lines(const PartDescription& part, const TracedSkeleton& skele
                 line.normal_plant = normalize_or(vec3(sum.normal * (1.0 / facing)), vec3(0));
             vec3 along = line.end_plant - line.begin_plant;
             float length_m = std::sqrt(glm::dot(along, along));
-            line.width_share = float(area_m2) / length_m;
+            line.width_share = float(radius_length) / length_m;
             traced.lines.push_back(line);
             traced.length_m += length_m;
         }
+        widen_by_area(std::span(traced.lines).subspan(first_line.back()), stem_area(around, stem));
         first_line.push_back(uint32_t(traced.lines.size()));
         for (uint32_t s = stem.first; s < stem.last; ++s) stem_of_segment[s] = uint32_t(i);
     }

@@ -171,6 +171,17 @@ TEST(AlphaCut, TrianglesKeepTheirFront) {
     }
 }
 
+TEST(AlphaCut, RegularHatchingKeepsItsShareWithinBounds) {
+    // Squares that touch at their corners, finer than any outline could follow.
+    set_test_picture(256, 256, [](uint32_t x, uint32_t y, uint8_t* rgba) {
+        rgba[1] = 255, rgba[3] = (x / 3 + y / 3) % 2 ? 255 : 0;
+    });
+    auto plant = import_cards({0, 0}, {1, 1}, 1);
+    ASSERT_TRUE(plant) << to_string(plant.error());
+    EXPECT_NEAR(area_of(plant->parts.at(0)), 0.5, 0.01);
+    EXPECT_LT(plant->parts[0].indices.size() / 3, 20'000u);
+}
+
 TEST(AlphaCut, SpecklesDoNotExplodeAndKeepTheirShare) {
     double opaque = 0;
     set_test_picture(64, 64, [&](uint32_t x, uint32_t y, uint8_t* rgba) {

@@ -119,9 +119,9 @@ TEST(ImportErrors, TwoParents) {
 
 TEST(ImportErrors, FilesOutsideTheFolder) {
     for (const char* uri : {"../x.bin", "%2e%2e/x.bin", "/etc/passwd"}) {
-        std::string json =
-            std::string("{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":4,\"uri\":\"") + uri +
-            "\"}]}";
+        std::string json = R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":4,"uri":")";
+        json += uri;
+        json += R"("}]})";
         Error error = error_of(import_gltf_memory(std::as_bytes(std::span(json)), "plant.gltf", "", {}));
         EXPECT_EQ(error.id, ErrorId::value_out_of_range);
         EXPECT_EQ(error.place, "buffers[0].uri");

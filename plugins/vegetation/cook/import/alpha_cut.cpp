@@ -8,13 +8,14 @@
 #include "plugins/vegetation/cook/import/texture_pyramid.h"
 #include "plugins/vegetation/cook/import/trace_outline.h"
 #include "plugins/vegetation/cook/import/triangulate_outline.h"
+#include "runtime/core/hash.h"
 
 namespace coppice {
 namespace {
 
-constexpr int64_t k_tile_limit = 16;       // repeats of a texture on one triangle that are cut
-constexpr size_t k_least_corners = 8;      // of a window, whatever the target
-constexpr size_t k_most_corners = 16'384;  // the same; cutting ears takes the square of it
+constexpr int64_t k_tile_limit = 16;      // repeats of a texture on one triangle that are cut
+constexpr size_t k_least_corners = 8;     // of a window, whatever the target
+constexpr size_t k_most_corners = 8'192;  // the same; cutting ears takes the square of it
 constexpr size_t k_most_traced =
     200'000;                           // corners traced; a finer picture than that is noise, and is averaged
 constexpr double k_uv_slack = 1.0e-4;  // coordinates meant to end at a texture's border may miss it by this
@@ -325,8 +326,8 @@ class Cutter {
         return float(double(sum) / double(step * step));
     }
 
-    // The window's outline on a grid of one line every `step` texels, in texels from the window's corner.
-    std::vector<Ring> trace_window(const Window& window, int64_t step) const {
+    // The window's alpha on a grid of one line every `step` texels, in texels from the window's corner.
+    AlphaGrid make_grid(const Window& window, int64_t step) const {
         int64_t width = window.count_u * picture_.width, height = window.count_v * picture_.height;
         int64_t columns = (width + step - 1) / step, rows = (height + step - 1) / step;
         // Grid lines: the window's border twice (outside nothing is opaque), and the middles of the texels.
@@ -362,7 +363,51 @@ class Cutter {
                 grid.values[y * across + x] =
                     (upper[left] + upper[right] + lower[left] + lower[right]) * 0.25f;
             }
-        return trace_outline(grid, opaque_alpha_);
+        return grid;
+    }
+
+    // Averaging moves the border of what is opaque, and thin or scattered things vanish under it. So averaged
+    // grids get the threshold that gives the texture's own opaque area; a little noise breaks the ties of
+    // regular patterns.
+    std::vector<Ring> trace_averaged(AlphaGrid grid, double opaque_area) const {
+        size_t across = grid.xs.size(), down = grid.ys.size();
+        for (size_t y = 0; y < down; ++y)
+            for (size_t x = 0; x < across; ++x) {
+                bool outside = x == 0 || y == 0 || x + 1 == across || y + 1 == down;
+                float noise = float(mix_bits(uint32_t(y * across + x)) >> 8) * 0x1p-24f;
+                grid.values[y * across + x] = outside ? -1.0f : grid.values[y * across + x] + noise;
+            }
+        float low = 0.0f, high = 256.0f;  // all of it is opaque; nothing is
+        for (int halving = 0; halving < 16; ++halving) {
+            float middle = (low + high) * 0.5f;
+            (area_of(trace_outline(grid, middle)) > opaque_area ? low : high) = middle;
+        }
+        return trace_outline(grid, high);
+    }
+
+    static double area_of(const std::vector<Ring>& rings) {
+        double area = 0.0;
+        for (const Ring& ring : rings) area += signed_area(ring);
+        return area;
+    }
+    static size_t corner_count_of(const std::vector<Ring>& rings) {
+        size_t count = 0;
+        for (const Ring& ring : rings) count += ring.size();
+        return count;
+    }
+
+    double opaque_texels(const Window& window) const {
+        uint64_t count = 0;
+        for (int64_t y = 0; y < window.count_v * picture_.height; ++y) {
+            size_t row = size_t(wrap_texel(window.first_v * picture_.height + y, picture_.height, wrap_t_)) *
+                         picture_.width;
+            for (int64_t x = 0; x < window.count_u * picture_.width; ++x) {
+                size_t column =
+                    size_t(wrap_texel(window.first_u * picture_.width + x, picture_.width, wrap_s_));
+                count += float(picture_.rgba[(row + column) * 4 + 3]) >= opaque_alpha_;
+            }
+        }
+        return double(count);
     }
 
     WindowMesh make_window(const Window& window) const {
@@ -370,19 +415,19 @@ class Cutter {
         int64_t step = 1;
         while (std::max(width, height) / step > int64_t(settings_.grid_side_limit)) step *= 2;
         std::vector<Ring> rings;
-        for (size_t corners = SIZE_MAX; corners > k_most_traced; step *= 2) {
-            rings = trace_window(window, step);
-            corners = 0;
-            for (const Ring& ring : rings) corners += ring.size();
+        for (;; step *= 2) {
+            rings = step == 1 ? trace_outline(make_grid(window, step), opaque_alpha_)
+                              : trace_averaged(make_grid(window, step), opaque_texels(window));
+            if (corner_count_of(rings) > k_most_traced) continue;
+            OutlineLimits limits;
+            limits.displaced_area = double(settings_.displaced_share) * std::fabs(area_of(rings));
+            limits.corner_count = corner_target(window);
+            limits.low = dvec2(0.0);
+            limits.high = dvec2(double(width), double(height));
+            rings = simplify_outline(rings, limits);
+            if (corner_count_of(rings) <= k_most_corners) break;
         }
-        double area = 0.0;
-        for (const Ring& ring : rings) area += signed_area(ring);
-        OutlineLimits limits;
-        limits.displaced_area = double(settings_.displaced_share) * std::fabs(area);
-        limits.corner_count = corner_target(window);
-        limits.low = dvec2(0.0);
-        limits.high = dvec2(double(width), double(height));
-        FlatMesh flat = triangulate_outline(simplify_outline(rings, limits));
+        FlatMesh flat = triangulate_outline(rings);
 
         WindowMesh mesh;
         std::vector<vec2> uvs;

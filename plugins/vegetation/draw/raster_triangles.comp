@@ -11,7 +11,7 @@ layout(binding = 4) buffer BigTriangles {
     uvec2 big[];  // first vertex, instance
 };
 
-const float k_side_limit_px = 12.0;  // longer triangles are shared by a group's lanes
+const float k_side_limit_px = 32.0;  // longer triangles are shared by a group's lanes
 
 void main() {
     uint index, first_item, step;

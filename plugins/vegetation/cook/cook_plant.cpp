@@ -67,7 +67,8 @@ class PartPacker {
         copy_name(mesh_.name, packed_.name, sizeof packed_.name);
         bool lines = mesh_.kind == PartKind::lines;
         packed_.kind = lines ? PackedPartKind::lines : PackedPartKind::points;
-        packed_.flags = (part_.closed ? 1u : 0u) | (mesh_.leaf ? 2u : 0u);
+        packed_.flags = (part_.closed ? k_part_closed : 0u) | (mesh_.leaf ? k_part_leaf : 0u) |
+                        (part_.closed && !mesh_.leaf && faces_outwards() ? k_part_faces_outwards : 0u);
         packed_.importance = part_.importance;
         packed_.area_m2 = float(part_.area_m2);
         packed_.projected_area_m2 = fit_direction_form(projected_areas_m2(mesh_, part_.closed));
@@ -95,6 +96,19 @@ class PartPacker {
   private:
     const DescriptionVertex& corner(size_t triangle, size_t k) const {
         return mesh_.vertices[mesh_.indices[3 * triangle + k]];
+    }
+    // Winding and normals agree (nearly) everywhere: a closed surface then never shows its back faces.
+    bool faces_outwards() const {
+        double agreeing = 0.0, total = 0.0;
+        for (size_t t = 0; t < mesh_.indices.size() / 3; ++t) {
+            vec3 a = corner(t, 0).position_plant;
+            vec3 face = glm::cross(corner(t, 1).position_plant - a, corner(t, 2).position_plant - a);
+            vec3 normal = corner(t, 0).normal_plant + corner(t, 1).normal_plant + corner(t, 2).normal_plant;
+            double area = double(std::sqrt(glm::dot(face, face)));
+            total += area;
+            if (glm::dot(face, normal) > 0.0f) agreeing += area;
+        }
+        return agreeing >= 0.99 * total;
     }
     uint32_t dither(size_t item) const { return mix_bits(uint32_t(item) ^ dither_seed_); }
 

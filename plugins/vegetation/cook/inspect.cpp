@@ -37,7 +37,7 @@ std::string inspect_plant(const Plant& plant) {
                         "part", "far as", "sides", "triangles", "points", "lines", "area m2", "length m",
                         "eps_l mm", "import", "above m2", "beside m2", "colour");
     for (const PackedPart& part : plant.parts) {
-        const char* sides = part.flags & 1u ? "closed" : part.flags & 2u ? "leaf" : "open";
+        const char* sides = part.flags & k_part_closed ? "closed" : part.flags & k_part_leaf ? "leaf" : "open";
         text += fmt::format(
             "{:<16} {:<6} {:<6} {:>9} {:>9} {:>7} {:>9.3f} {:>9.2f} {:>8.2f} {:>6.2f} {:>9.3f} {:>9.3f} "
             "{:>8}\n",
@@ -65,8 +65,8 @@ std::string inspect_plant_json(const Plant& plant) {
     for (const PackedPart& part : plant.parts)
         parts.push_back({{"name", part.name},
                          {"kind", name_of_kind(part)},
-                         {"closed", (part.flags & 1u) != 0},
-                         {"leaf", (part.flags & 2u) != 0},
+                         {"closed", (part.flags & k_part_closed) != 0},
+                         {"leaf", (part.flags & k_part_leaf) != 0},
                          {"importance", part.importance},
                          {"triangles", part.triangle_count},
                          {"points", part.point_count},

@@ -81,7 +81,7 @@ uint64_t expand_terrain(const Terrain& terrain, uint32_t first_vertex, dvec3 cam
         auto levels = terrain.levels().subspan(patch.first_level, patch.level_count);
         size_t level = levels.size() - 1;
         while (level > 0 && levels[level].error_m * frustum.focal_px > k_error_px * distance_m) --level;
-        work.add_triangles(first_vertex + levels[level].first_vertex, levels[level].vertex_count / 3, instance);
+        work.add_triangles(first_vertex + levels[level].first_vertex, levels[level].vertex_count / 3, instance, false);
         triangles += levels[level].vertex_count / 3;
     }
     return triangles;

@@ -38,6 +38,9 @@ void main() {
             if (any(greaterThanEqual(ceil(low - 0.5), min(ceil(high - 0.5), size))) ||
                 any(lessThanEqual(high, vec2(0.5))))
                 continue;
+            // Rows count downwards, so what is wound counter-clockwise for the viewer has a negative area here.
+            vec2 to_b = b.xy - a.xy, to_c = c.xy - a.xy;
+            if (entry.cull_back && to_b.x * to_c.y > to_b.y * to_c.x) continue;
         }
         if (across || any(greaterThan(high - low, vec2(k_side_limit_px)))) {
             uint slot = atomicAdd(big_count, 1u);

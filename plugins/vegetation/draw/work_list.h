@@ -23,7 +23,8 @@ struct WorkEntry {
     uint32_t first_owner;  // points_blend only
     float size_px;         // splat side or line width
     uint32_t owner_min;    // points_blend only
-    uint32_t unused[2];
+    uint32_t cull_back;    // triangles only: 1: those that turn their back are left out
+    uint32_t unused;
 };
 static_assert(sizeof(WorkEntry) == 32);
 
@@ -41,6 +42,7 @@ inline constexpr size_t k_lane_buckets = 4;            // up to 4, 8, 16, 32 pri
 // A part's place in the geometry buffer.
 struct PartGeometry {
     uint32_t first_triangle_vertex, first_point, first_line_vertex, first_owner;
+    bool cull_back;  // the triangles are wound and closed so that their backs are never seen
 };
 
 // What one job adds. Kept from frame to frame, so that a warm frame allocates nothing.
@@ -50,7 +52,7 @@ class WorkPart {
     // Index of the instance within this part, for add().
     uint32_t add_instance(const WorkInstance& instance);
     void add(const PartGeometry& geometry, const PartChoice& choice, uint32_t instance);
-    void add_triangles(uint32_t first_vertex, uint32_t count, uint32_t instance);
+    void add_triangles(uint32_t first_vertex, uint32_t count, uint32_t instance, bool cull_back);
 
     uint64_t triangles = 0, lines = 0, points = 0;
 

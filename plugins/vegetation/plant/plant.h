@@ -30,6 +30,10 @@ struct DirectionForm {
     float evaluate(vec3 d) const;
 };
 
+inline constexpr uint32_t k_part_closed = 1;        // of a closed surface only the front half can be seen
+inline constexpr uint32_t k_part_leaf = 2;          // lit from both sides
+inline constexpr uint32_t k_part_faces_outwards = 4;  // closed, and wound so that back faces need not be drawn
+
 enum class PackedPartKind : uint32_t { points = 0, lines = 1 };
 
 // Coverage gains at log2(fill) = -(k_gain_levels - 1) ... 0, where fill is the projected area in square
@@ -41,7 +45,7 @@ inline constexpr uint32_t k_gain_levels = 10;
 struct PackedPart {
     char name[32];        // UTF-8, zero-terminated
     PackedPartKind kind;  // what stands for its triangles in the distance
-    uint32_t flags;       // bit 0: closed surface, of which only the front half can be seen; bit 1: leaf
+    uint32_t flags;       // k_part_*
     float importance;     // > 0, multiplies the primitive counts
     uint32_t first_triangle, triangle_count;  // k; in progressive order: every prefix is well spread
     uint32_t first_point, point_count;        // n_p; progressive; 0 where kind is lines

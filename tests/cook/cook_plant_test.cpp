@@ -60,8 +60,8 @@ TEST(CookPlant, SplitsATreeIntoPointsAndLinesByThickness) {
     EXPECT_NEAR(plant.parts[1].line_error_m, 0.012f, 0.001f);
     EXPECT_NEAR(plant.parts[0].line_length_m, 4.0f, 0.05f);
     EXPECT_NEAR(plant.parts[1].line_length_m, 60.0f, 0.5f);
-    EXPECT_EQ(plant.parts[0].flags, 1u) << "a tube is closed";
-    EXPECT_EQ(plant.parts[2].flags, 2u) << "a leaf is not";
+    EXPECT_EQ(plant.parts[0].flags, k_part_closed | k_part_faces_outwards) << "a tube is closed";
+    EXPECT_EQ(plant.parts[2].flags, k_part_leaf) << "a leaf is not";
     EXPECT_EQ(plant.parts[2].point_count, 2 * plant.parts[2].triangle_count);
     EXPECT_NEAR(plant.parts[2].area_m2, 3000 * 0.05f * 0.05f, 1e-3f);
 }

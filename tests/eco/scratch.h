@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <string>
 #include <string_view>
+#include <unistd.h>
 #include <gtest/gtest.h>
 #include "plugins/terrain/load_terrain.h"
 #include "plugins/vegetation/eco/load_scene.h"
@@ -13,7 +14,7 @@ namespace coppice {
 class ScratchFile {
   public:
     ScratchFile(const std::string& name, std::string_view text)
-        : path_(testing::TempDir() + "eco_test_" + name) {
+        : path_(testing::TempDir() + "eco_test_" + std::to_string(::getpid()) + "_" + name) {
         EXPECT_TRUE(write_text_file(path_, text).has_value());
     }
     ~ScratchFile() { std::remove(path_.c_str()); }

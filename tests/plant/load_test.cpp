@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <cstring>
 #include <filesystem>
+#include <unistd.h>
 #include <fstream>
 #include "plugins/vegetation/plant/format.h"
 #include "plugins/vegetation/plant/pack.h"
@@ -160,7 +161,7 @@ TEST(LoadPlant, SaysWhatOtherFilesAre) {
 }
 
 TEST(LoadPlant, MapsAFile) {
-    std::string path = (std::filesystem::temp_directory_path() / "coppice_load_test.plant").string();
+    std::string path = (std::filesystem::temp_directory_path() / ("coppice_load_test_" + std::to_string(::getpid()) + ".plant")).string();
     ASSERT_TRUE(write_file(path, pack_plant(small_plant())));
     auto plant = load_plant(path);
     ASSERT_TRUE(plant) << to_string(plant.error());

@@ -3,6 +3,7 @@
 #include <cstring>
 #include <map>
 #include <fmt/format.h>
+#include <unistd.h>
 #include <gtest/gtest.h>
 #include "plugins/vegetation/plant/plant.h"
 #include "runtime/core/file.h"
@@ -31,7 +32,7 @@ Error fault_of(const std::string& json, const std::string& folder = ".") {
 
 class TemporaryFile {
   public:
-    TemporaryFile(const std::string& name, std::string_view bytes) : name_("terrain_test_" + name) {
+    TemporaryFile(const std::string& name, std::string_view bytes) : name_("terrain_test_" + std::to_string(::getpid()) + "_" + name) {
         EXPECT_TRUE(write_text_file(path(), bytes).has_value());
     }
     ~TemporaryFile() { std::remove(path().c_str()); }

@@ -1,20 +1,39 @@
 #include "runtime/core/file.h"
 
+#include <atomic>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
 #include <filesystem>
-#include <sys/stat.h>
 #include <unistd.h>
 #include "runtime/core/mapped_file.h"
 
 namespace coppice {
 
+namespace {
+
+// A new file beside `path`, whose name goes to `temporary`; -1: errno says why. The kernel applies the umask:
+// reading it would mean changing it, for all threads.
+int create_beside(const std::string& path, std::string& temporary) {
+    static std::atomic<uint32_t> count{0};
+    int fd = -1;
+    for (int attempt = 0; attempt < 1000; ++attempt) {
+        temporary = path + "." + std::to_string(::getpid()) + "-" + std::to_string(count++);
+        fd = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (fd >= 0 || (errno != EEXIST && errno != EINTR))
+            break;  // left behind by a process of the same number
+    }
+    return fd;
+}
+
+}  // namespace
+
 Result<std::string> read_text_file(const std::string& path, size_t size_limit_bytes) {
     COPPICE_TRY(MappedFile file, MappedFile::open(path));
     if (file.bytes().size() > size_limit_bytes)
-        return fail(ErrorId::limit_exceeded, path, "", "the file has " + std::to_string(file.bytes().size()) + " bytes",
+        return fail(ErrorId::limit_exceeded, path, "",
+                    "the file has " + std::to_string(file.bytes().size()) + " bytes",
                     "at most " + std::to_string(size_limit_bytes) + " bytes are read");
     return std::string(reinterpret_cast<const char*>(file.bytes().data()), file.bytes().size());
 }
@@ -28,8 +47,8 @@ Status write_file(const std::string& path, std::span<const std::byte> bytes) {
     auto parent = std::filesystem::path(path).parent_path();
     if (!parent.empty()) std::filesystem::create_directories(parent, ignored);
 
-    std::string temporary = path + ".XXXXXX";
-    int fd = ::mkostemp(temporary.data(), O_CLOEXEC);
+    std::string temporary;
+    int fd = create_beside(path, temporary);
     if (fd < 0) return failed("cannot create a temporary file");
     auto give_up = [&](const char* what) {
         auto result = failed(what);
@@ -44,9 +63,6 @@ Status write_file(const std::string& path, std::span<const std::byte> bytes) {
         if (count <= 0) return give_up("cannot write");
         written += size_t(count);
     }
-    mode_t mask = ::umask(0);
-    ::umask(mask);
-    if (::fchmod(fd, 0666 & ~mask) != 0) return give_up("cannot set permissions");
     if (::fsync(fd) != 0) return give_up("cannot flush");
     if (::close(fd) != 0 || ::rename(temporary.c_str(), path.c_str()) != 0) {
         auto result = failed("cannot replace");
@@ -61,7 +77,8 @@ Status write_text_file(const std::string& path, std::string_view text) {
 }
 
 std::string default_cache_dir() {
-    if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache && *cache) return std::string(cache) + "/coppice";
+    if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache && *cache)
+        return std::string(cache) + "/coppice";
     if (const char* home = std::getenv("HOME"); home && *home) return std::string(home) + "/.cache/coppice";
     return "/tmp/coppice-cache";
 }

@@ -11,7 +11,8 @@ namespace coppice {
 // limit_exceeded above size_limit_bytes.
 Result<std::string> read_text_file(const std::string& path, size_t size_limit_bytes = size_t(1) << 28);
 
-// Temporary file beside the target, fsync, rename. Makes missing parent folders. Errors: write_failed.
+// Temporary file beside the target, fsync, rename; with the permissions any new file gets. Makes missing
+// parent folders. From any thread. Errors: write_failed.
 Status write_file(const std::string& path, std::span<const std::byte> bytes);
 Status write_text_file(const std::string& path, std::string_view text);
 

@@ -95,7 +95,7 @@ TEST(LoadScene, SameOnAnyNumberOfThreads) {
 TEST(LoadScene, ReadsCsvWithAliases) {
     ScratchFile csv("trees.csv", "x,y,species,height\n500010,20,QURO,7\n500011,21,fern,\n");
     auto scene = load_scene_text(with("{\"plant\": \"fern\", \"at\": [10, -20], \"tilt_deg\": 10}",
-                                      "{\"csv\": \"eco_test_trees.csv\", \"offset\": [-500000, 0], "
+                                      "{\"csv\": \"trees.csv\", \"offset\": [-500000, 0], "
                                       "\"species\": {\"QURO\": \"oak\"}}"));
     ASSERT_TRUE(scene) << to_string(scene.error());
     size_t found = 0;
@@ -114,7 +114,7 @@ TEST(LoadScene, NeedsNothingButPlantsAndPlacements) {
     auto scene = load_scene_text(R"({"plants": {"oak": {"source": "oak.json"}}, "placements": []})",
                                  "meadow.eco.json");
     ASSERT_TRUE(scene) << to_string(scene.error());
-    EXPECT_EQ(scene->name, "eco_test_meadow");
+    EXPECT_EQ(scene->name, "meadow");
     EXPECT_EQ(scene->camera_path.size(), 1u);
     EXPECT_TRUE(scene->tiles.empty());
     EXPECT_EQ(scene->terrain, nullptr);

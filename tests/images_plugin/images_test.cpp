@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <unistd.h>
 #include "runtime/core/file.h"
 #include "runtime/plugin/registry.h"
 
@@ -23,7 +24,7 @@ class Images : public ::testing::Test {
         images_ = registry_->find<ImagesInterface>(k_images_interface, k_images_version);
         ASSERT_NE(images_, nullptr);
         folder_ = std::filesystem::temp_directory_path() /
-                  ("coppice-images-" +
+                  ("coppice-images-" + std::to_string(::getpid()) + "-" +
                    std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
         std::filesystem::create_directories(folder_);
     }

@@ -23,6 +23,8 @@ struct PlantModel {
     uint32_t seed;   // any well mixed bits; decides fractions of primitives
 };
 
+// Plant space to world space; its transpose turns back.
+mat3 rotation_matrix(PlantTurn turn);
 PlantTurn pack_turn(float x, float y, float z, float w);
 inline PlantTurn pack_turn_about_y(float angle_rad) {
     return pack_turn(0.0f, portable_sin(angle_rad * 0.5f), 0.0f, portable_cos(angle_rad * 0.5f));

@@ -6,6 +6,7 @@
 #include "plugins/vegetation/cook/inspect.h"
 #include "plugins/vegetation/plant/plant.h"
 #include "runtime/core/file.h"
+#include "runtime/core/log.h"
 #include "tests/cook/shapes.h"
 
 namespace coppice {
@@ -37,9 +38,12 @@ class CookFile : public testing::Test {
         EXPECT_TRUE(write_text_file(path, text));
         return path;
     }
-    Result<std::string> find(const std::string& source, uint64_t variation = 0,
-                             const CookSettings& settings = {}) {
-        return find_or_cook((dir_ / "cache").string(), source, variation, settings, &k_modeller, nullptr);
+    std::string cache_dir() const { return (dir_ / "cache").string(); }
+    Result<Plant> find(const std::string& source, uint64_t variation = 0, const CookSettings& settings = {}) {
+        const PlantSource one{source, variation};
+        COPPICE_TRY(std::vector<Plant> plants,
+                    find_or_cook(cache_dir(), std::span(&one, 1), settings, &k_modeller, nullptr));
+        return std::move(plants.at(0));
     }
     // One triangle, its buffer in a file of its own.
     std::string write_triangle(float height_m) {
@@ -103,39 +107,85 @@ TEST_F(CookFile, TheCacheCooksOnce) {
     g_grown = 0;
     auto first = find(source), second = find(source);
     ASSERT_TRUE(first && second);
-    EXPECT_EQ(*first, *second);
+    EXPECT_EQ(first->content_hash, second->content_hash);
     EXPECT_EQ(g_grown, 1);
-    EXPECT_TRUE(load_plant(*first));
+    EXPECT_TRUE(load_plant(*cooked_path(cache_dir(), source, 0, {})));
 }
 
 TEST_F(CookFile, TheCacheFollowsSourceVariationSettingsAndReferences) {
+    auto path_of = [this](const std::string& source, uint64_t variation = 0,
+                          const CookSettings& settings = {}) {
+        return *cooked_path(cache_dir(), source, variation, settings);
+    };
     std::string source = write("a.json", "12345");
-    std::string before = *find(source);
-    EXPECT_NE(*find(source, 1), before);
+    std::string before = path_of(source);
+    EXPECT_EQ(path_of(source), before);
+    EXPECT_NE(path_of(source, 1), before);
     CookSettings shuffled;
     shuffled.order = PrefixOrder::shuffled;
-    EXPECT_NE(*find(source, 0, shuffled), before);
+    EXPECT_NE(path_of(source, 0, shuffled), before);
+    EXPECT_EQ(find(source)->triangle_vertices.size(), 5u * 6);
     write("a.json", "1234567");
-    EXPECT_NE(*find(source), before);
-    EXPECT_EQ(load_plant(*find(source))->triangle_vertices.size(), 7u * 6);
+    EXPECT_NE(path_of(source), before);
+    EXPECT_EQ(find(source)->triangle_vertices.size(), 7u * 6);
 
-    std::string triangle = write_triangle(2), of_two = *find(triangle);
+    std::string triangle = write_triangle(2), of_two = path_of(triangle);
+    EXPECT_NEAR(find(triangle)->bounds_plant.size().y, 2.0f, 0.2f);
     write_triangle(3);  // the same .gltf, another .bin
-    EXPECT_NE(*find(triangle), of_two);
-    EXPECT_NEAR(load_plant(*find(triangle))->bounds_plant.size().y, 3.0f, 0.2f);
+    EXPECT_NE(path_of(triangle), of_two);
+    EXPECT_NEAR(find(triangle)->bounds_plant.size().y, 3.0f, 0.2f);
 }
 
-TEST_F(CookFile, TheCacheReplacesWhatIsBroken) {
-    std::string source = write("a.json", "12345");
-    std::string path = *find(source);
+// The lines logged while it lives.
+class Log {
+  public:
+    Log() {
+        set_log_sink([](void* log, LogLevel level,
+                        std::string_view line) { static_cast<Log*>(log)->lines.emplace_back(level, line); },
+                     this);
+    }
+    ~Log() { set_log_sink(nullptr, nullptr); }
+    std::vector<std::pair<LogLevel, std::string>> lines;
+};
+
+TEST_F(CookFile, TheCacheReplacesWhatIsBrokenAndNotesIt) {
+    std::string source = write("a.json", "12345"), path = *cooked_path(cache_dir(), source, 0, {});
+    ASSERT_TRUE(find(source));
     std::filesystem::resize_file(path, 200);
-    EXPECT_FALSE(load_plant(path));
-    EXPECT_EQ(*find(source), path);
+    ASSERT_FALSE(load_plant(path));
+    Log log;
+    EXPECT_TRUE(find(source));
     EXPECT_TRUE(load_plant(path));
+    ASSERT_EQ(log.lines.size(), 1u);
+    EXPECT_EQ(log.lines[0].first, LogLevel::note);
+    EXPECT_NE(log.lines[0].second.find(path), std::string::npos) << log.lines[0].second;
+}
+
+TEST_F(CookFile, WithoutAWritableCachePlantsStayInMemoryAfterOneWarning) {
+    const std::vector<PlantSource> sources{{write("a.json", "12345"), 0}, {write("b.json", "123"), 0}};
+    auto cached = find_or_cook(cache_dir(), sources, {}, &k_modeller, nullptr);
+    write("file", "in the way");
+    Log log;
+    auto kept = find_or_cook((dir_ / "file").string(), sources, {}, &k_modeller, nullptr);
+    ASSERT_TRUE(cached && kept);
+    ASSERT_EQ(kept->size(), 2u);
+    for (size_t i = 0; i < 2; ++i) EXPECT_EQ((*kept)[i].content_hash, (*cached)[i].content_hash);
+    ASSERT_EQ(log.lines.size(), 1u);
+    EXPECT_EQ(log.lines[0].first, LogLevel::warning);
+}
+
+TEST_F(CookFile, APackedPlantIsLoadedAsItIs) {
+    std::string source = write("a.json", "12345"), packed = (dir_ / "a.plant").string();
+    ASSERT_TRUE(cook_file(source, packed, 3, {}, &k_modeller, nullptr));
+    auto plant = find(packed);
+    ASSERT_TRUE(plant) << to_string(plant.error());
+    EXPECT_EQ(plant->content_hash, load_plant(packed)->content_hash);
+    EXPECT_FALSE(std::filesystem::exists(cache_dir()));
+    EXPECT_EQ(find((dir_ / "none.plant").string()).error().id, ErrorId::file_missing);
 }
 
 TEST_F(CookFile, InspectShowsWhatIsInside) {
-    auto plant = load_plant(*find(write("a.json", "12345")));
+    auto plant = find(write("a.json", "12345"));
     ASSERT_TRUE(plant);
     std::string table = inspect_plant(*plant), json = inspect_plant_json(*plant);
     for (const char* word : {"leaves", "leaf", "points", "10", "20"})

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include "runtime/core/file.h"
+#include "tools/coppice/bench_cook.h"
 #include "tools/coppice/bench_ecs.h"
 #include "tools/coppice/bench_raster.h"
 #include "tools/coppice/bench_scenes.h"
@@ -26,6 +27,7 @@ std::string list_benches() {
     return text + R"(
 Examples:
   coppice bench ecs
+  coppice bench cook --json out/cook.json
   coppice bench raster --device llvmpipe --json out/raster.json
   coppice bench stand --strict        exit code 1 where a figure does not reach what it is to reach)";
 }
@@ -70,6 +72,8 @@ Status run(const BenchCommand& command) {
 
 const std::vector<Bench>& benches() {
     static const std::vector<Bench> k_benches{
+        {"cook", "sampling of an oak, whole cooks of oak and pine, the same bytes on 1 and 2 threads",
+         bench_cook},
         {"ecs", "a million entities in tiles of 1,000: create, destroy, iterate, find",
          [](const BenchSettings&) { return bench_ecs(); }},
         {"raster", "points, lines and triangles a second of the rasteriser alone",

@@ -22,7 +22,9 @@ Examples:
   coppice play content/scenes/pines.eco.json --headless 795x700 --out out/pines --compare-full
       also draws some of the frames with every triangle, and prints both times
   coppice play content/scenes/pines.eco.json --headless 795x700 --out out/p --frames 90 --pictures 0,45,89
-      the first 90 frames, pictures of three of them)";
+      the first 90 frames, pictures of three of them
+  coppice play tree.glb
+      any plant, with a grove of it behind, from where it fills the picture to where it is 20 pixels tall)";
 
 struct PlayCommand {
     PlayOptions options;
@@ -83,7 +85,9 @@ void add_play(CLI::App& app, Command& chosen) {
     PlayOptions& options = command->options;
     CLI::App* play = app.add_subcommand("play", "Fly through a scene, in a window or headless with a report");
     play->footer(k_examples);
-    play->add_option("scene", options.scene, "The scene, *.eco.json")->required();
+    play->add_option("scene", options.scene,
+                     "The scene, *.eco.json, or a plant: *.glb, *.gltf, species *.json, *.plant")
+        ->required();
     play->add_option("--path", options.path, "Camera path, *.json, in place of the scene's own");
     play->add_option("--headless", command->headless,
                      "Size of the picture, as 1280x720; no window is opened");

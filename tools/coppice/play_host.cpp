@@ -1,18 +1,16 @@
 #include "tools/coppice/play_host.h"
 
 #include <algorithm>
-
 #include "plugins/modeller/modeller.h"
 #include "plugins/vegetation/cook/cook_file.h"
 #include "plugins/vegetation/eco/camera_path.h"
 #include "plugins/vegetation/eco/load_scene.h"
 #include "plugins/vegetation/eco/make_tiles.h"
+#include "plugins/vegetation/eco/plant_scene.h"
 #include "plugins/vegetation/eco/shade_ground.h"
 #include "runtime/core/file.h"
 #include "runtime/core/hash.h"
-#include "runtime/core/jobs.h"
 #include "runtime/core/mapped_file.h"
-#include "runtime/core/progress.h"
 
 namespace coppice {
 namespace {
@@ -38,89 +36,103 @@ const ImagesInterface* PlayHost::find_images() {
     return registry.find<ImagesInterface>(k_images_interface, k_images_version);
 }
 
-// Cooks what is missing, all models side by side, and maps every plant.
+// A plant's scene is made when its size is known, in load_plants.
+Status PlayHost::load_scene_file(const PlayOptions& options) {
+    Stopwatch clock;
+    COPPICE_TRY(const uint64_t file_hash, hash_file(options.scene));
+    hashes.emplace_back("scene file", file_hash);
+    if (is_plant_file(options.scene)) {
+        scene.models = {plant_scene_model(options.scene)};
+    } else {
+        const auto* terrain = registry.find<TerrainInterface>(k_terrain_interface, k_terrain_version);
+        COPPICE_TRY(scene, load_scene(options.scene, {terrain}));
+    }
+    if (!options.path.empty()) {
+        COPPICE_TRY(scene.camera_path, load_camera_path(options.path, scene.terrain.get()));
+    }
+    load.scene_ms = clock.ms();
+    return {};
+}
+
 Result<std::vector<Plant>> PlayHost::load_plants(const PlayOptions& options) {
+    Stopwatch plants_clock;
     const auto* modeller = registry.find<ModellerInterface>(k_modeller_interface, k_modeller_version);
     const std::string cache_dir = options.cache_dir.empty() ? default_cache_dir() : options.cache_dir;
-    const size_t count = scene.models.size();
-    const bool textured = std::any_of(scene.models.begin(), scene.models.end(), [](const SceneModel& model) {
-        return !model.source_path.ends_with(".json");
+    std::vector<PlantSource> sources;
+    for (const SceneModel& model : scene.models) sources.push_back({model.source_path, model.variation});
+    const bool textured = std::any_of(sources.begin(), sources.end(), [](const PlantSource& source) {
+        return !source.path.ends_with(".json") && !source.path.ends_with(".plant");
     });
-    const ImagesInterface* images = textured ? find_images() : nullptr;
-    std::vector<Result<std::string>> paths(count);
-    Stopwatch cook_clock;
-    {
-        Progress progress("cooking plants", count);
-        parallel_for(count, 1, [&](size_t first, size_t last) {
-            for (size_t i = first; i < last; ++i) {
-                const SceneModel& model = scene.models[i];
-                paths[i] = find_or_cook(cache_dir, model.source_path, model.variation, CookSettings{},
-                                        modeller, images);
-                progress.advance();
-            }
-        });
-    }
-    load.cook_ms = cook_clock.ms();
+    COPPICE_TRY(std::vector<Plant> plants, find_or_cook(cache_dir, sources, CookSettings{}, modeller,
+                                                        textured ? find_images() : nullptr));
+    load.plants_ms = plants_clock.ms();
 
-    Stopwatch plants_clock;
-    std::vector<Plant> plants;
-    plants.reserve(count);
-    for (size_t i = 0; i < count; ++i) {
-        COPPICE_TRY(const std::string path, std::move(paths[i]));
-        COPPICE_TRY(Plant plant, load_plant(path));
-        hashes.emplace_back("plant " + scene.models[i].name, plant.content_hash);
-        plants.push_back(std::move(plant));
-    }
+    Stopwatch tiles_clock;
     std::vector<Box> bounds;
-    for (const Plant& plant : plants) bounds.push_back(plant.bounds_plant);
+    for (size_t i = 0; i < plants.size(); ++i) {
+        hashes.emplace_back("plant " + scene.models[i].name, plants[i].content_hash);
+        bounds.push_back(plants[i].bounds_plant);
+    }
+    if (is_plant_file(options.scene)) {
+        const auto* terrain = registry.find<TerrainInterface>(k_terrain_interface, k_terrain_version);
+        std::vector<CameraKey> chosen_path = std::move(scene.camera_path);
+        COPPICE_TRY(scene, make_plant_scene(options.scene, bounds.front(), options.height, terrain));
+        if (!chosen_path.empty()) scene.camera_path = std::move(chosen_path);
+    }
     finish_tiles(scene, bounds);
     if (scene.terrain) shade_ground(scene, *scene.terrain, bounds);
-    load.plants_ms = plants_clock.ms();
+    load.tiles_ms = tiles_clock.ms();
     return plants;
+}
+
+Status PlayHost::create_device(const PlayOptions& options,
+                               const std::vector<const char*>& present_extensions) {
+    Stopwatch clock;
+    gpu::DeviceSettings settings;
+    settings.choice = options.device;
+    settings.validation = options.validation;
+    settings.present = !present_extensions.empty();
+    settings.instance_extensions = present_extensions;
+    COPPICE_TRY(device, gpu::Device::create(settings));
+    COPPICE_TRY(ring, gpu::CommandRing::create(*device, k_frame_slots));
+    load.device_ms = clock.ms();
+    return {};
+}
+
+Status PlayHost::create_vegetation(const PlayOptions& options, std::vector<Plant> plants) {
+    Stopwatch clock;
+    const auto* interface = registry.find<VegetationInterface>(k_vegetation_interface, k_vegetation_version);
+    if (!interface)
+        return fail(ErrorId::name_unknown, "", "plugin vegetation", "does not provide its interface",
+                    "install the plugin of this version");
+    VegetationSettings settings;
+    settings.device = device.get();
+    settings.world = &world;
+    settings.schedule = &schedule;
+    settings.frame_graph = &graph;
+    settings.frame_slots = k_frame_slots;
+    settings.width = width = options.width;
+    settings.height = height = options.height;
+    COPPICE_TRY(vegetation, interface->create(settings));
+    COPPICE_CHECK(vegetation->set_scene(scene, std::move(plants)));
+    // The world has its own: 32 bytes a plant need not be kept twice.
+    plant_count = scene.positions.size();
+    scene.positions = {};
+    scene.turns = {};
+    scene.plant_models = {};
+    scene.tiles = {};
+    load.upload_ms = clock.ms();
+    return {};
 }
 
 Result<std::unique_ptr<PlayHost>> PlayHost::create(const PlayOptions& options,
                                                    const std::vector<const char*>& present_extensions) {
     std::unique_ptr<PlayHost> host(new PlayHost);
     COPPICE_CHECK(host->load_plugins());
-    Stopwatch scene_clock;
-    const auto* terrain = host->registry.find<TerrainInterface>(k_terrain_interface, k_terrain_version);
-    COPPICE_TRY(host->scene, load_scene(options.scene, {terrain}));
-    if (!options.path.empty()) {
-        COPPICE_TRY(host->scene.camera_path, load_camera_path(options.path, host->scene.terrain.get()));
-    }
-    COPPICE_TRY(const uint64_t scene_hash, hash_file(options.scene));
-    host->hashes.emplace_back("scene file", scene_hash);
-    host->load.scene_ms = scene_clock.ms();
+    COPPICE_CHECK(host->load_scene_file(options));
+    COPPICE_CHECK(host->create_device(options, present_extensions));
     COPPICE_TRY(std::vector<Plant> plants, host->load_plants(options));
-
-    Stopwatch device_clock;
-    gpu::DeviceSettings device_settings;
-    device_settings.choice = options.device;
-    device_settings.validation = options.validation;
-    device_settings.present = !present_extensions.empty();
-    device_settings.instance_extensions = present_extensions;
-    COPPICE_TRY(host->device, gpu::Device::create(device_settings));
-    COPPICE_TRY(host->ring, gpu::CommandRing::create(*host->device, k_frame_slots));
-    host->load.device_ms = device_clock.ms();
-
-    Stopwatch upload_clock;
-    const auto* vegetation =
-        host->registry.find<VegetationInterface>(k_vegetation_interface, k_vegetation_version);
-    if (!vegetation)
-        return fail(ErrorId::name_unknown, "", "plugin vegetation", "does not provide its interface",
-                    "install the plugin of this version");
-    VegetationSettings settings;
-    settings.device = host->device.get();
-    settings.world = &host->world;
-    settings.schedule = &host->schedule;
-    settings.frame_graph = &host->graph;
-    settings.frame_slots = k_frame_slots;
-    settings.width = host->width = options.width;
-    settings.height = host->height = options.height;
-    COPPICE_TRY(host->vegetation, vegetation->create(settings));
-    COPPICE_CHECK(host->vegetation->set_scene(host->scene, std::move(plants)));
-    host->load.upload_ms = upload_clock.ms();
+    COPPICE_CHECK(host->create_vegetation(options, std::move(plants)));
     return host;
 }
 

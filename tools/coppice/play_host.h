@@ -1,7 +1,6 @@
 // What any program has that embeds the vegetation plugin: plugins, a scene with its plants, a device, a
 // world, a schedule, a frame graph and a ring of command buffers. One thread at a time.
 #pragma once
-#include <chrono>
 #include <functional>
 #include <memory>
 #include <span>
@@ -18,23 +17,14 @@
 #include "runtime/plugin/registry.h"
 #include "tools/coppice/play_options.h"
 #include "tools/coppice/play_record.h"
+#include "tools/coppice/stopwatch.h"
 
 namespace coppice {
 
-// Milliseconds since it was made.
-class Stopwatch {
-  public:
-    double ms() const {
-        return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
-    }
-
-  private:
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
-
 class PlayHost {
   public:
-    // Loads everything the options name; plants that are not in the cache are cooked first.
+    // Loads everything the options name: a scene, or a plant with a scene made for it. The device comes
+    // before the plants, so that whoever has none need not wait for those that are not in the cache.
     // present_extensions: of the instance, where the pictures go to a window.
     static Result<std::unique_ptr<PlayHost>> create(const PlayOptions& options,
                                                     const std::vector<const char*>& present_extensions = {});
@@ -68,7 +58,8 @@ class PlayHost {
 
     // In the order of what needs what, destroyed from the last to the first.
     Registry registry;
-    Scene scene;
+    Scene scene;  // without its plants once they are in the world
+    uint64_t plant_count = 0;
     std::vector<std::pair<std::string, uint64_t>> hashes;  // of what was loaded
     LoadTimes load{};
     std::unique_ptr<gpu::Device> device;
@@ -82,7 +73,10 @@ class PlayHost {
   private:
     PlayHost() = default;
     Status load_plugins();
+    Status load_scene_file(const PlayOptions& options);
     Result<std::vector<Plant>> load_plants(const PlayOptions& options);
+    Status create_device(const PlayOptions& options, const std::vector<const char*>& present_extensions);
+    Status create_vegetation(const PlayOptions& options, std::vector<Plant> plants);
 };
 
 }  // namespace coppice

@@ -45,14 +45,21 @@ Result<PlayPicture> keep_picture(const ImagesInterface* images, const PlayOption
     return kept;
 }
 
-// Writes the device times of each slot's frame into that frame's record.
+// Writes the device times of each slot's frame into that frame's record, as long as it lives.
 class PassTimes {
   public:
-    explicit PassTimes(PlayRecord& record) : record_(record) {}
+    PassTimes(PlayHost& host, PlayRecord& record) : host_(host), record_(record) {
+        host_.read_times = [this](uint32_t slot, auto sections) { read(slot, sections); };
+    }
+    ~PassTimes() { host_.read_times = nullptr; }
+    PassTimes(const PassTimes&) = delete;
+    PassTimes& operator=(const PassTimes&) = delete;
     void expect(uint32_t slot, size_t frame) {
         if (slot >= frames_.size()) frames_.resize(slot + 1, k_none);
         frames_[slot] = frame;
     }
+
+  private:
     void read(uint32_t slot, std::span<const gpu::Timestamps::Section> sections) {
         if (slot >= frames_.size() || frames_[slot] == k_none) return;
         FrameRecord& frame = record_.frames[frames_[slot]];
@@ -67,8 +74,6 @@ class PassTimes {
             next = index + 1;
         }
     }
-
-  private:
     void insert_pass(size_t index, const char* name) {
         record_.passes.insert(record_.passes.begin() + ptrdiff_t(index), name);
         for (FrameRecord& frame : record_.frames)
@@ -77,6 +82,7 @@ class PassTimes {
     }
 
     static constexpr size_t k_none = SIZE_MAX;
+    PlayHost& host_;
     PlayRecord& record_;
     std::vector<size_t> frames_;
 };
@@ -119,7 +125,7 @@ PlayRecord describe(const PlayHost& host, const PlayOptions& options) {
     record.device = host.device->name;
     record.driver = host.device->driver;
     record.validation = options.validation;
-    record.plants = host.scene.plant_models.size();
+    record.plants = host.plant_count;
     record.hashes = host.hashes;
     return record;
 }
@@ -148,8 +154,7 @@ Result<PlayRecord> play_headless(PlayHost& host, const PlayOptions& options) {
     if (!picture_frames.empty() && !(images = host.find_images()))
         log_note("the images plugin is not installed: pictures are written as PPM");
 
-    PassTimes pass_times(record);
-    host.read_times = [&pass_times](uint32_t slot, auto sections) { pass_times.read(slot, sections); };
+    PassTimes pass_times(host, record);
     for (uint32_t i = 0; i < options.warmup; ++i) {
         COPPICE_TRY(PlayHost::FrameTimes times,
                     host.draw_frame(camera_at(host.scene.camera_path, 0.0), settings));
@@ -181,7 +186,6 @@ Result<PlayRecord> play_headless(PlayHost& host, const PlayOptions& options) {
         progress.advance();
     }
     COPPICE_CHECK(host.finish_times());
-    host.read_times = nullptr;
     for (FrameRecord& frame : record.frames) frame.pass_ms.resize(record.passes.size(), 0.0);
     record.scene_triangles = record.frames.back().report.scene_triangles;
     record.validation_messages = host.device->validation_messages();

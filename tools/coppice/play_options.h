@@ -10,8 +10,8 @@
 namespace coppice {
 
 struct PlayOptions {
-    std::string scene;
-    std::string path;  // camera path; empty: the scene's own
+    std::string scene;  // or a plant, which gets a scene made for it
+    std::string path;   // camera path; empty: the scene's own
     bool headless = false;
     uint32_t width = 1280, height = 720;
     std::string out;                          // folder; empty: no files

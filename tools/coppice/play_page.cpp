@@ -184,9 +184,9 @@ std::string facts_table(const PlayRecord& record) {
     row("level of detail", record.settings.level_of_detail ? "on" : "off: every triangle");
     const LoadTimes& load = record.load;
     row("loading, ms",
-        fmt::format("scene {:.0f}, cooking {:.0f}, plants {:.0f}, device {:.0f}, upload {:.0f}, first "
+        fmt::format("scene {:.0f}, device {:.0f}, plants {:.0f}, tiles {:.0f}, upload {:.0f}, first "
                     "frame {:.0f}",
-                    load.scene_ms, load.cook_ms, load.plants_ms, load.device_ms, load.upload_ms,
+                    load.scene_ms, load.device_ms, load.plants_ms, load.tiles_ms, load.upload_ms,
                     load.first_frame_ms));
     if (record.validation) row("validation layers", fmt::format("{} messages", record.validation_messages));
     for (const auto& [name, hash] : record.hashes) row("hash of " + name, hash_to_hex(hash));

@@ -37,7 +37,10 @@ struct ComparedFrame {
 };
 
 struct LoadTimes {
-    double scene_ms, cook_ms, plants_ms, device_ms, upload_ms, first_frame_ms;
+    double scene_ms, device_ms;
+    double plants_ms;  // found in the cache and checked, or cooked
+    double tiles_ms;   // their bounds, and the ground's shade
+    double upload_ms, first_frame_ms;
 };
 
 struct PlayRecord {

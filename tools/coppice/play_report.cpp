@@ -68,10 +68,11 @@ std::vector<Figure> play_figures(const PlayRecord& record) {
          "MiB",
          {}},
         {"load_ms",
-         record.load.scene_ms + record.load.plants_ms + record.load.device_ms + record.load.upload_ms,
+         record.load.scene_ms + record.load.device_ms + record.load.plants_ms + record.load.tiles_ms +
+             record.load.upload_ms,
          "ms",
          {}},
-        {"cook_ms", record.load.cook_ms, "ms", {}},
+        {"plants_ms", record.load.plants_ms, "ms", {}},
         {"first_frame_ms", record.load.first_frame_ms, "ms", {}},
     };
     for (size_t pass = 0; pass < record.passes.size(); ++pass)
@@ -155,9 +156,9 @@ nlohmann::json play_summary(const PlayRecord& record) {
           {"driver", record.driver}}},
         {"load_ms",
          {{"scene", record.load.scene_ms},
-          {"cook", record.load.cook_ms},
-          {"plants", record.load.plants_ms},
           {"device", record.load.device_ms},
+          {"plants", record.load.plants_ms},
+          {"tiles", record.load.tiles_ms},
           {"upload", record.load.upload_ms},
           {"first_frame", record.load.first_frame_ms}}},
         {"figures", std::move(figures)},

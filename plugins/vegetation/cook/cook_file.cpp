@@ -1,19 +1,24 @@
 #include "plugins/vegetation/cook/cook_file.h"
 
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
+#include <memory>
+#include <utility>
 #include <fmt/format.h>
 #include "plugins/vegetation/cook/import/gltf_document.h"
 #include "plugins/vegetation/cook/import/gltf_uri.h"
 #include "plugins/vegetation/cook/import/import_gltf.h"
-#include "plugins/vegetation/plant/plant.h"
 #include "runtime/core/file.h"
 #include "runtime/core/hash.h"
+#include "runtime/core/jobs.h"
+#include "runtime/core/log.h"
+#include "runtime/core/progress.h"
 
 namespace coppice {
 namespace {
 
-enum class SourceKind { species, gltf, unknown };
+enum class SourceKind { species, gltf, packed, unknown };
 
 std::string ending_of(const std::string& path) {
     std::string ending = std::filesystem::path(path).extension().string();
@@ -25,6 +30,7 @@ std::string ending_of(const std::string& path) {
 SourceKind kind_of(const std::string& path) {
     std::string ending = ending_of(path);
     if (ending == ".json") return SourceKind::species;
+    if (ending == ".plant") return SourceKind::packed;
     return ending == ".glb" || ending == ".gltf" ? SourceKind::gltf : SourceKind::unknown;
 }
 
@@ -56,6 +62,34 @@ uint64_t hash_references(const std::string& path, std::span<const std::byte> byt
     return hash;
 }
 
+Result<std::vector<std::byte>> cook_source(const std::string& source_path, uint64_t variation,
+                                           const CookSettings& settings, const ModellerInterface* modeller,
+                                           const ImagesInterface* images) {
+    COPPICE_TRY(PlantDescription plant, read_plant(source_path, variation, modeller, images));
+    auto bytes = cook_plant(plant, settings);
+    // The description only knows its own name; the reader needs the file.
+    if (!bytes) bytes.error().file = source_path;
+    return bytes;
+}
+
+// unwritten: why the cache could not take what was cooked, where it could not.
+Result<Plant> find_or_cook_one(const std::string& cache_dir, const PlantSource& source,
+                               const CookSettings& settings, const ModellerInterface* modeller,
+                               const ImagesInterface* images, Status& unwritten) {
+    if (kind_of(source.path) == SourceKind::packed) return load_plant(source.path);
+    COPPICE_TRY(const std::string path, cooked_path(cache_dir, source.path, source.variation, settings));
+    Result<Plant> found = load_plant(path);
+    if (found) return found;
+    if (found.error().id != ErrorId::file_missing)
+        log_note("{}; it is cooked again", to_string(found.error()));
+    COPPICE_TRY(std::vector<std::byte> bytes,
+                cook_source(source.path, source.variation, settings, modeller, images));
+    unwritten = write_file(path, bytes);
+    if (unwritten) return load_plant(path);
+    return load_plant_from_memory(std::make_shared<const std::vector<std::byte>>(std::move(bytes)),
+                                  source.path);
+}
+
 }  // namespace
 
 Result<PlantDescription> read_plant(const std::string& source_path, uint64_t variation,
@@ -83,14 +117,9 @@ Result<PlantDescription> read_plant(const std::string& source_path, uint64_t var
 Status cook_file(const std::string& source_path, const std::string& out_path, uint64_t variation,
                  const CookSettings& settings, const ModellerInterface* modeller,
                  const ImagesInterface* images) {
-    COPPICE_TRY(PlantDescription plant, read_plant(source_path, variation, modeller, images));
-    auto bytes = cook_plant(plant, settings);
-    if (!bytes) {
-        // The description only knows its own name; the reader needs the file.
-        bytes.error().file = source_path;
-        return fail(std::move(bytes.error()));
-    }
-    return write_file(out_path, *bytes);
+    COPPICE_TRY(const std::vector<std::byte> bytes,
+                cook_source(source_path, variation, settings, modeller, images));
+    return write_file(out_path, bytes);
 }
 
 Result<std::string> cooked_path(const std::string& cache_dir, const std::string& source_path,
@@ -108,13 +137,28 @@ Result<std::string> cooked_path(const std::string& cache_dir, const std::string&
     return (std::filesystem::path(cache_dir) / "plants" / name).string();
 }
 
-Result<std::string> find_or_cook(const std::string& cache_dir, const std::string& source_path,
-                                 uint64_t variation, const CookSettings& settings,
-                                 const ModellerInterface* modeller, const ImagesInterface* images) {
-    COPPICE_TRY(std::string path, cooked_path(cache_dir, source_path, variation, settings));
-    if (load_plant(path)) return path;
-    COPPICE_CHECK(cook_file(source_path, path, variation, settings, modeller, images));
-    return path;
+Result<std::vector<Plant>> find_or_cook(const std::string& cache_dir, std::span<const PlantSource> sources,
+                                        const CookSettings& settings, const ModellerInterface* modeller,
+                                        const ImagesInterface* images) {
+    std::vector<Result<Plant>> found(sources.size());
+    std::vector<Status> unwritten(sources.size());
+    Progress progress("cooking plants", sources.size());
+    parallel_for(sources.size(), 1, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; ++i) {
+            found[i] = find_or_cook_one(cache_dir, sources[i], settings, modeller, images, unwritten[i]);
+            progress.advance();
+        }
+    });
+    auto failed = std::find_if(unwritten.begin(), unwritten.end(), [](const Status& s) { return !s; });
+    if (failed != unwritten.end())
+        log_warning("{}; plants are cooked again the next time", to_string(failed->error()));
+    std::vector<Plant> plants;
+    plants.reserve(sources.size());
+    for (Result<Plant>& one : found) {
+        COPPICE_TRY(Plant plant, std::move(one));
+        plants.push_back(std::move(plant));
+    }
+    return plants;
 }
 
 }  // namespace coppice

@@ -2,10 +2,13 @@
 // modeller plugin; and the cache of plants cooked before.
 #pragma once
 #include <cstdint>
+#include <span>
 #include <string>
+#include <vector>
 #include "plugins/images/images.h"
 #include "plugins/modeller/modeller.h"
 #include "plugins/vegetation/cook/cook_plant.h"
+#include "plugins/vegetation/plant/plant.h"
 
 namespace coppice {
 
@@ -26,10 +29,17 @@ Status cook_file(const std::string& source_path, const std::string& out_path, ui
 Result<std::string> cooked_path(const std::string& cache_dir, const std::string& source_path,
                                 uint64_t variation, const CookSettings& settings);
 
-// cooked_path, after cooking what is missing there or cannot be loaded. Programs may race: each writes a
-// whole file.
-Result<std::string> find_or_cook(const std::string& cache_dir, const std::string& source_path,
-                                 uint64_t variation, const CookSettings& settings,
-                                 const ModellerInterface* modeller, const ImagesInterface* images);
+struct PlantSource {
+    std::string path;  // .glb, .gltf, species .json; or .plant, which is loaded as it is
+    uint64_t variation = 0;
+};
+
+// The packed plants of all sources, in their order, each loaded and checked once: from the cache, or cooked
+// into it where it is missing there or cannot be loaded (which is noted). Where the cache cannot be written,
+// plants stay in memory after one warning for all. Sources are cooked side by side; programs may race,
+// because each writes a whole file. Errors: the first source's that has one.
+Result<std::vector<Plant>> find_or_cook(const std::string& cache_dir, std::span<const PlantSource> sources,
+                                        const CookSettings& settings, const ModellerInterface* modeller,
+                                        const ImagesInterface* images);
 
 }  // namespace coppice

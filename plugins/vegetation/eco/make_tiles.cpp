@@ -85,14 +85,6 @@ void sort_keys(std::vector<Key>& keys) {
         });
 }
 
-// Plant space to world space.
-mat3 turn_matrix(PlantTurn turn) {
-    float s = 1.0f / 32767.0f, x = turn.x * s, y = turn.y * s, z = turn.z * s, w = turn.w * s;
-    return mat3(vec3(1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)),
-                vec3(2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)),
-                vec3(2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)));
-}
-
 }  // namespace
 
 void make_tiles(std::span<const Placement> placements, Scene& scene) {
@@ -168,7 +160,7 @@ void finish_tiles(Scene& scene, std::span<const Box> model_bounds_plant) {
                 Box bounds = model_bounds_plant[scene.plant_models[row].model];
                 if (bounds.empty()) bounds = {vec3(0.0f), vec3(0.0f)};
                 vec3 half = bounds.size() * (0.5f * p.scale), center = bounds.center() * p.scale;
-                mat3 turn = turn_matrix(scene.turns[row]);
+                mat3 turn = rotation_matrix(scene.turns[row]);
                 vec3 middle = vec3(p.x_tile, p.y_tile, p.z_tile) + turn * center;
                 // Turns are rounded to 16 bits: a thousandth more holds for certain.
                 vec3 reach =

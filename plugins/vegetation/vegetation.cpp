@@ -8,6 +8,7 @@
 #include "plugins/vegetation/vegetation.h"
 
 #include <chrono>
+#include <cmath>
 #include "plugins/vegetation/cull/list_tiles.h"
 #include "plugins/vegetation/draw/expand_plants.h"
 #include "plugins/vegetation/draw/rasteriser.h"
@@ -39,47 +40,48 @@ class VegetationSystems final : public Vegetation {
     }
 
     Status set_scene(const Scene& scene, std::vector<Plant> plants) override {
+        COPPICE_CHECK(check_scene(scene, plants.size()));
         COPPICE_TRY(SceneGeometry geometry, gather_geometry(scene, plants));
+        drop_scene();
         COPPICE_CHECK(rasteriser_->set_geometry({geometry.vertices, geometry.owners}));
         geometry.vertices = {};
         geometry.owners = {};
-        for (const Entity& tile : tiles_) settings_.world->destroy(tile);
-        for (const ChunkId& chunk : chunks_) settings_.world->destroy_chunk(chunk);
-        tiles_.clear();
-        chunks_.clear();
         geometry_ = std::move(geometry);
         terrain_ = scene.terrain;
         light_ = scene.light;
-        scene_triangles_ = 0;
         for (const SceneTile& source : scene.tiles) {
             if (source.plant_count == 0) continue;
             Tile tile = source.tile;
             tile.plant_count = source.plant_count;
             Entity owner = settings_.world->create(tile);
+            tiles_.push_back(owner);
             auto [chunk, positions, turns, models] =
                 settings_.world->create_chunk<PlantPosition, PlantTurn, PlantModel>(source.plant_count, owner);
-            if (!chunk)
+            if (!chunk) {
+                drop_scene();
                 return fail(ErrorId::limit_exceeded, scene.path, "tiles", "no room for another tile",
                             "place fewer plants");
+            }
+            chunks_.push_back(chunk);
             for (uint32_t i = 0; i < source.plant_count; ++i) {
                 size_t plant = source.first_plant + i;
                 positions[i] = scene.positions[plant];
                 turns[i] = scene.turns[plant];
                 models[i] = scene.plant_models[plant];
-                if (models[i].model >= geometry_.models.size())
-                    return fail(ErrorId::value_out_of_range, scene.path, "plants",
-                                "model " + std::to_string(models[i].model),
-                                "the scene has " + std::to_string(geometry_.models.size()) + " models");
                 scene_triangles_ += geometry_.models[models[i].model].triangle_count;
             }
-            tiles_.push_back(owner);
-            chunks_.push_back(chunk);
         }
         return {};
     }
 
     Status resize(uint32_t width, uint32_t height) override { return rasteriser_->resize(width, height); }
-    void set_camera(const Camera& camera) override { camera_ = camera; }
+    void set_camera(const Camera& camera) override {
+        const dvec3& p = camera.position_world;
+        // A host's camera that is not a number must not reach a sort or a pixel: the one before stays.
+        if (std::isfinite(p.x + p.y + p.z) && std::isfinite(camera.yaw_rad + camera.pitch_rad) &&
+            camera.vertical_fov_rad > 0.0f && camera.near_m > 0.0f && std::isfinite(camera.near_m))
+            camera_ = camera;
+    }
     void set_light(const Light& light) override { light_ = light; }
     void set_settings(const FrameSettings& settings) override { frame_ = settings; }
     void set_slot(uint32_t slot) override { slot_ = slot; }
@@ -89,6 +91,35 @@ class VegetationSystems final : public Vegetation {
     const FrameReport& report() const override { return report_; }
 
   private:
+    Status check_scene(const Scene& scene, size_t plant_count) const {
+        auto wrong = [&scene](std::string fault, std::string remedy) {
+            return fail(ErrorId::value_out_of_range, scene.path, "plants", std::move(fault), std::move(remedy));
+        };
+        if (plant_count != scene.models.size())
+            return wrong(std::to_string(plant_count) + " packed plants", "one for each of the scene's models");
+        size_t placed = scene.positions.size();
+        if (scene.turns.size() != placed || scene.plant_models.size() != placed)
+            return wrong("arrays of different length", "one position, turn and model a plant");
+        for (const SceneTile& tile : scene.tiles)
+            if (tile.first_plant > placed || tile.plant_count > placed - tile.first_plant)
+                return wrong("a tile of plants that do not exist", "ranges inside the arrays");
+        for (const PlantModel& model : scene.plant_models)
+            if (model.model >= plant_count)
+                return wrong("model " + std::to_string(model.model),
+                             "the scene has " + std::to_string(plant_count) + " models");
+        return {};
+    }
+
+    void drop_scene() {
+        for (const Entity& tile : tiles_) settings_.world->destroy(tile);
+        for (const ChunkId& chunk : chunks_) settings_.world->destroy_chunk(chunk);
+        tiles_.clear();
+        chunks_.clear();
+        geometry_ = {};
+        terrain_ = nullptr;
+        scene_triangles_ = 0;
+    }
+
     void list_tiles(const TileList::Plants& plants) {
         double begin = now_ms();
         frustum_ = make_frustum(camera_, rasteriser_->width(), rasteriser_->height());
@@ -99,15 +130,15 @@ class VegetationSystems final : public Vegetation {
     void expand() {
         double begin = now_ms();
         size_t run_count = tile_list_.runs().size();
-        work_.begin(run_count + 1);  // the last one is the terrain's
+        work_.begin(run_count + 1);  // the first one is the terrain's: should memory run out, the ground stays
         run_counts_.assign(run_count, {});
         parallel_for(run_count, 1, [this](size_t first, size_t last) {
             for (size_t i = first; i < last; ++i)
-                run_counts_[i] = expand_plants(tile_list_.runs()[i], geometry_, frustum_, frame_, work_.part(i));
+                run_counts_[i] = expand_plants(tile_list_.runs()[i], geometry_, frustum_, frame_, work_.part(i + 1));
         });
         report_.terrain_triangles =
             terrain_ ? expand_terrain(*terrain_, geometry_.first_terrain_vertex, camera_.position_world, frustum_,
-                                      work_.part(run_count))
+                                      frame_, work_.part(0))
                      : 0;
         report_.lod_ms = now_ms() - begin;
     }
@@ -115,12 +146,16 @@ class VegetationSystems final : public Vegetation {
     void write_work_list() {
         double begin = now_ms();
         WorkList::Size size = work_.size();
-        if (size.instances > rasteriser_->instances(slot_).size() || size.entries > rasteriser_->entries(slot_).size()) {
+        bool fits = size.instances <= rasteriser_->instances(slot_).size() &&
+                    size.entries <= rasteriser_->entries(slot_).size();
+        if (!fits && size.entries < refused_entries_) {
             // Half as much again, so that a slowly growing list does not stop every frame. Where there is no memory for
-            // it, what fits is drawn and the rest counted as dropped.
+            // it, what fits is drawn, the rest counted as dropped, and so much is not asked for again.
             if (auto grown = rasteriser_->grow(slot_, size.instances + size.instances / 2, size.entries + size.entries / 2);
-                !grown)
+                !grown) {
+                refused_entries_ = size.entries;
                 log_warning("{}", to_string(grown.error()));
+            }
         }
         layout_ = work_.gather(rasteriser_->instances(slot_), rasteriser_->entries(slot_));
         rasteriser_->set_frame(slot_, layout_, camera_, light_, frame_.view == RepresentationView::kinds);
@@ -136,14 +171,15 @@ class VegetationSystems final : public Vegetation {
         for (size_t i = 0; i < run_counts_.size(); ++i) {
             report_.plants_visible += run_counts_[i].plants_visible;
             report_.full_triangles += run_counts_[i].full_triangles;
-            report_.triangles += work_.part(i).triangles;
-            report_.lines += work_.part(i).lines;
-            report_.points += work_.part(i).points;
+            report_.triangles += work_.part(i + 1).triangles;
+            report_.lines += work_.part(i + 1).lines;
+            report_.points += work_.part(i + 1).points;
         }
         report_.vertices = report_.points + 2 * report_.lines + 3 * report_.triangles;
         report_.scene_triangles = scene_triangles_;
         report_.work_entries = layout_.entry_count;
         report_.dropped_entries = layout_.dropped_entries;
+        report_.dropped_triangles = rasteriser_->dropped_triangles();
         report_.gpu_bytes = rasteriser_->gpu_bytes();
     }
 
@@ -164,6 +200,7 @@ class VegetationSystems final : public Vegetation {
     TileList tile_list_;
     WorkList work_;
     WorkList::Layout layout_;
+    uint32_t refused_entries_ = UINT32_MAX;  // a list this long found no memory
     std::vector<ExpandCounts> run_counts_;
     FrameReport report_;
 };

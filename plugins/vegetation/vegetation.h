@@ -6,7 +6,9 @@
 //     frame_graph.record(frame.commands, frame.timestamps);
 //     ... submit; vegetation->color() then holds the picture
 //
-// One thread at a time; inside, the jobs of runtime/core/jobs.h.
+// One thread at a time; inside, the jobs of runtime/core/jobs.h. Systems and passes refer to the Vegetation: run
+// neither the schedule nor the frame graph after it is gone, and destroy all three before the registry that loaded the
+// plugin. Its destructor waits for the device.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -37,9 +39,10 @@ class Vegetation {
     virtual ~Vegetation() = default;
 
     // plants[i] is the packed plant of scene.models[i]. Uploads geometry, makes the tiles' chunks. Replaces the scene
-    // before. Waits for the device; not for frames. Errors: limit_exceeded, device_lost.
+    // before. Waits for the device; not for frames. Errors: value_out_of_range (the old scene stays), limit_exceeded,
+    // device_lost (the scene is empty then).
     virtual Status set_scene(const Scene& scene, std::vector<Plant> plants) = 0;
-    // Size of the picture; waits for the device when it changes. 1 to 16384 a side.
+    // Size of the picture; waits for the device. 1 to 16384 a side. On an error the old size stays.
     virtual Status resize(uint32_t width, uint32_t height) = 0;
 
     virtual void set_camera(const Camera& camera) = 0;

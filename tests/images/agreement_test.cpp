@@ -84,11 +84,21 @@ TEST_P(Agreement, LevelsOfDetailCoverWhatThePlantCovers) {
         EXPECT_LE(color, k_bound) << height_px;
         EXPECT_GT(reference.coverage_px, 100.0);
     }
+    // A coarser sample distance means fewer and larger primitives, not more or less of the plant.
+    FrameSettings coarse = lod;
+    coarse.sample_distance_px = 2.0f;
+    Means full_coarse = mean_over_directions(**picture, 150.0f, full);
+    Means drawn_coarse = mean_over_directions(**picture, 150.0f, coarse);
+    EXPECT_NEAR(drawn_coarse.coverage_px / full_coarse.coverage_px, 1.0, k_bound);
+    // Else a level of detail that never leaves out a triangle would agree best.
+    Means full_far = mean_over_directions(**picture, 20.0f, full), far = mean_over_directions(**picture, 20.0f, lod);
+    EXPECT_LT(far.triangles, full_far.triangles / 5);
+    EXPECT_GT(far.points + far.lines, 0u);
     EXPECT_EQ(shared_device()->validation_messages(), 0u);
 }
 
 INSTANTIATE_TEST_SUITE_P(Species, Agreement,
-                         ::testing::Values("pine", "birch", "oak", "stand_tree", "palm", "shrub", "grass", "daisy",
+                         ::testing::Values("pine", "birch", "oak", "stand_tree", "palm", "shrub", "grass", "fern", "daisy",
                                            "sunflower"),
                          [](const auto& info) { return std::string(info.param); });
 

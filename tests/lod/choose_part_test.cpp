@@ -41,7 +41,7 @@ TEST(ChoosePoints, DrawsAsManyVerticesAsAskedFor) {
     FrameSettings settings;
     for (float p = 1.0f; p < 4000.0f; p *= 1.03f) {
         PartChoice choice = choose_points(part, p, settings, 0.5f);  // d' = 1, c_p = 1: p points for p square pixels
-        uint32_t drawn_points = choice.points - 2 * std::min(choice.point_owner_min, choice.points / 2);
+        uint32_t drawn_points = choice.points - choice.skipped_points;
         uint32_t vertices = drawn_points + 3 * choice.triangles;
         EXPECT_NEAR(float(vertices), std::min(p, 3000.0f), 2.0f) << p;
     }
@@ -144,8 +144,16 @@ TEST(ChoosePart, EverySizeAndSettingHasAnAnswer) {
 }
 
 TEST(PixelsPerMeter, StaysFiniteInsideAPlant) {
-    EXPECT_FLOAT_EQ(pixels_per_meter(600.0f, 0.0f, 0.1f, 1.0f), 6000.0f);
-    EXPECT_FLOAT_EQ(pixels_per_meter(600.0f, 10.0f, 0.1f, 2.0f), 120.0f);
+    EXPECT_FLOAT_EQ(pixels_per_meter(600.0f, 0.0f, 3.0f, 0.1f, 1.0f), 6000.0f);
+    EXPECT_FLOAT_EQ(pixels_per_meter(600.0f, 10.0f, 3.0f, 0.1f, 2.0f), 120.0f);
+    EXPECT_FLOAT_EQ(pixels_per_meter(600.0f, 0.0f, 0.0f, 0.1f, 1.0f), 6000.0f);
+    float before = 0.0f;  // grows all the way in
+    for (float distance_m = 20.0f; distance_m > 0.0f; distance_m -= 0.01f) {
+        float here = pixels_per_meter(600.0f, distance_m, 3.0f, 0.1f, 1.0f);
+        EXPECT_GE(here, before);
+        EXPECT_TRUE(before == 0.0f || here < 1.5f * before || distance_m < 3.0f) << distance_m;
+        before = here;
+    }
 }
 
 }  // namespace

@@ -18,13 +18,12 @@ void TileList::list(const Plants& plants, const Frustum& frustum, dvec3 camera_w
         Visibility visibility = see_box(frustum, bounds);
         if (visibility == Visibility::outside) return;
         float distance_m = glm::length(glm::clamp(vec3(0.0f), bounds.min, bounds.max));
-        tiles_.push_back({distance_m, tile.origin_world,
+        tiles_.push_back({distance_m, chunk.entity(0).index,
                           {origin, visibility == Visibility::inside, positions, turns, models}});
     });
     visible_tile_count = uint32_t(tiles_.size());
     std::sort(tiles_.begin(), tiles_.end(), [](const VisibleTile& a, const VisibleTile& b) {
-        return std::tuple(a.distance_m, a.origin_world.x, a.origin_world.z, a.origin_world.y) <
-               std::tuple(b.distance_m, b.origin_world.x, b.origin_world.z, b.origin_world.y);
+        return std::tuple(a.distance_m, a.first_index) < std::tuple(b.distance_m, b.first_index);
     });
     for (const VisibleTile& tile : tiles_)
         for (size_t first = 0; first < tile.plants.positions.size(); first += k_plants_a_run) {

@@ -22,7 +22,7 @@ class TileList {
   public:
     using Plants = Query<const PlantPosition, const PlantTurn, const PlantModel, Owner<const Tile>>;
 
-    // Order: by distance of the tile's bounds, then by origin, so it does not depend on the order of chunks.
+    // Order: by distance of the tile's bounds, then by the tile's first plant. Requires a finite camera.
     void list(const Plants& plants, const Frustum& frustum, dvec3 camera_world);
 
     std::span<const PlantRun> runs() const { return runs_; }
@@ -31,7 +31,7 @@ class TileList {
   private:
     struct VisibleTile {
         float distance_m;
-        dvec3 origin_world;
+        uint32_t first_index;  // of the tile's first entity
         PlantRun plants;
     };
     std::vector<VisibleTile> tiles_;

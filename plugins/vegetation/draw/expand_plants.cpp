@@ -52,7 +52,8 @@ ExpandCounts expand_plants(const PlantRun& run, const SceneGeometry& geometry, c
 
         float distance_m = glm::length(center);
         PlantView view;
-        view.pixels_per_meter = pixels_per_meter(frustum.focal_px, distance_m, frustum.near_m, place.scale);
+        view.pixels_per_meter = pixels_per_meter(frustum.focal_px, distance_m, model.radius_m * place.scale,
+                                                 frustum.near_m, place.scale);
         view.direction_plant =
             distance_m > 0.0f ? rotation.apply_inverse(center * (1.0f / distance_m)) : vec3(0.0f, 0.0f, -1.0f);
         uint32_t instance = UINT32_MAX;
@@ -69,8 +70,8 @@ ExpandCounts expand_plants(const PlantRun& run, const SceneGeometry& geometry, c
 }
 
 uint64_t expand_terrain(const Terrain& terrain, uint32_t first_vertex, dvec3 camera_world, const Frustum& frustum,
-                        WorkPart& work) {
-    constexpr float k_error_px = 1.0f;
+                        const FrameSettings& settings, WorkPart& work) {
+    const float error_px = settings.level_of_detail ? 1.0f : 0.0f;
     vec3 origin = vec3(terrain.origin_world() - camera_world);
     uint32_t instance = work.add_instance(instance_of(rotation_of({0, 0, 0, 32767}), 1.0f, origin));
     uint64_t triangles = 0;
@@ -80,7 +81,7 @@ uint64_t expand_terrain(const Terrain& terrain, uint32_t first_vertex, dvec3 cam
         float distance_m = std::max(glm::length(glm::clamp(vec3(0.0f), bounds.min, bounds.max)), frustum.near_m);
         auto levels = terrain.levels().subspan(patch.first_level, patch.level_count);
         size_t level = levels.size() - 1;
-        while (level > 0 && levels[level].error_m * frustum.focal_px > k_error_px * distance_m) --level;
+        while (level > 0 && levels[level].error_m * frustum.focal_px > error_px * distance_m) --level;
         work.add_triangles(first_vertex + levels[level].first_vertex, levels[level].vertex_count / 3, instance, false);
         triangles += levels[level].vertex_count / 3;
     }

@@ -15,8 +15,9 @@ struct ExpandCounts {
 ExpandCounts expand_plants(const PlantRun& run, const SceneGeometry& geometry, const Frustum& frustum,
                            const FrameSettings& settings, WorkPart& work);
 
-// The terrain's patches in view, each at the coarsest level whose error stays under a pixel. Returns the triangles.
+// The terrain's patches in view, each at the coarsest level whose error stays under a pixel, or all at the finest
+// without levels of detail. Returns the triangles.
 uint64_t expand_terrain(const Terrain& terrain, uint32_t first_vertex, dvec3 camera_world, const Frustum& frustum,
-                        WorkPart& work);
+                        const FrameSettings& settings, WorkPart& work);
 
 }  // namespace coppice

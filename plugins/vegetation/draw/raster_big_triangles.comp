@@ -13,7 +13,7 @@ layout(binding = 4) readonly buffer BigTriangles {
 };
 
 struct Corner {
-    vec3 position;  // plant space
+    vec3 place;     // column * w, row * w, w
     vec3 normal;    // world space, any length
     vec3 color;     // linear
     float openness;
@@ -23,13 +23,17 @@ Corner load_corner(Transform t, uint index, out uint surface) {
     uvec4 v = texelFetch(vertices, int(index));
     surface = turn_surface(t, v.w, k_kind_triangle);
     vec3 normal = decode_normal(surface);
-    return Corner(uintBitsToFloat(v.xyz), normal / max(length(normal), 1.0e-6), decode_color_linear(surface),
+    vec4 p = vec4(uintBitsToFloat(v.xyz), 1.0);
+    return Corner(vec3(dot(t.to_x, p), dot(t.to_y, p), dot(t.to_w, p)), normal / max(length(normal), 1.0e-6), decode_color_linear(surface),
                   decode_openness(surface));
 }
 
-Corner mix_corners(Corner a, Corner b, float s) {
-    return Corner(mix(a.position, b.position, s), mix(a.normal, b.normal, s), mix(a.color, b.color, s),
-                  mix(a.openness, b.openness, s));
+// Where an edge crosses the near plane; always from the corner behind it, so that both triangles of the edge agree.
+Corner cut_edge(Corner behind, Corner ahead) {
+    float near_m = frame.row_w.w;
+    float s = clamp((near_m - behind.place.z) / (ahead.place.z - behind.place.z), 0.0, 1.0);
+    return Corner(vec3(mix(behind.place.xy, ahead.place.xy, s), near_m), mix(behind.normal, ahead.normal, s),
+                  mix(behind.color, ahead.color, s), mix(behind.openness, ahead.openness, s));
 }
 
 // Rounded up or down by a fixed pattern, so that slow gradients show no bands.
@@ -44,21 +48,23 @@ uint pack_surface(vec3 normal, vec3 color, float openness, uint leaf, ivec2 pixe
     return encode_normal(normal) | level.x << 12 | level.y << 17 | level.z << 23 | open << 28 | leaf;
 }
 
-void draw_triangle(Transform t, Corner corners[3], uint leaf) {
+void draw_triangle(Corner corners[3], uint leaf) {
     vec2 size = vec2(frame.row_x.w, frame.row_y.w);
     float near_m = frame.row_w.w;
-    vec3 a = project(t, corners[0].position), b = project(t, corners[1].position), c = project(t, corners[2].position);
-    vec3 inverse_w = 1.0 / max(vec3(a.z, b.z, c.z), vec3(near_m));
-    Plane plane = plane_through(a.xy, b.xy, c.xy);
+    vec3 inverse_w = 1.0 / max(vec3(corners[0].place.z, corners[1].place.z, corners[2].place.z), vec3(near_m));
+    // Divided as project() does, so that edges shared with small triangles fall on the same places.
+    vec2 a = corners[0].place.xy / corners[0].place.z, b = corners[1].place.xy / corners[1].place.z,
+         c = corners[2].place.xy / corners[2].place.z;
+    Plane plane = plane_through(a, b, c);
     float low = min(min(a.y, b.y), c.y), high = max(max(a.y, b.y), c.y);
     float row_first = max(ceil(low - 0.5), 0.0), row_last = min(ceil(high - 0.5), size.y);
     for (float row = row_first; row < row_last; row += 1.0) {
-        vec2 span = scan_row(a.xy, b.xy, c.xy, row + 0.5);
+        vec2 span = scan_row(a, b, c, row + 0.5);
         float column_last = min(ceil(span.y - 0.5), size.x);
         for (float column = max(ceil(span.x - 0.5), 0.0) + float(gl_LocalInvocationID.x); column < column_last;
              column += float(gl_WorkGroupSize.x)) {
             ivec2 pixel = ivec2(column, row);
-            vec3 weight = weights_at(plane, a.xy, vec2(pixel) + 0.5) * inverse_w;
+            vec3 weight = weights_at(plane, a, vec2(pixel) + 0.5) * inverse_w;
             float sum = weight.x + weight.y + weight.z;
             vec3 share = weight / sum;  // perspective-correct
             vec3 normal = corners[0].normal * share.x + corners[1].normal * share.y + corners[2].normal * share.z;
@@ -76,29 +82,34 @@ void main() {
         uvec2 reference = big[i];
         Transform t = load_transform(reference.y);
         Corner corner[3];
-        float beyond[3];  // distance past the near plane
         uint surface, kept = 0u;
         for (int v = 0; v < 3; ++v) {
             corner[v] = load_corner(t, reference.x + uint(v), surface);
-            beyond[v] = dot(t.to_w, vec4(corner[v].position, 1.0)) - near_m;
-            kept |= beyond[v] >= 0.0 ? 1u << v : 0u;
+            kept |= corner[v].place.z >= near_m ? 1u << v : 0u;
         }
         uint leaf = surface & k_leaf_bit;
+        if (kept == 0u) continue;
         if (kept == 7u) {
-            draw_triangle(t, corner, leaf);
+            draw_triangle(corner, leaf);
             continue;
         }
         // Turn it so that the odd one out is corner 0.
         int odd = kept == 1u || kept == 6u ? 0 : kept == 2u || kept == 5u ? 1 : 2;
         int n1 = odd == 2 ? 0 : odd + 1, n2 = odd == 0 ? 2 : odd - 1;
-        Corner cut1 = mix_corners(corner[odd], corner[n1], clamp(beyond[odd] / (beyond[odd] - beyond[n1]), 0.0, 1.0));
-        Corner cut2 = mix_corners(corner[odd], corner[n2], clamp(beyond[odd] / (beyond[odd] - beyond[n2]), 0.0, 1.0));
-        bool one = kept == 1u || kept == 2u || kept == 4u;
+        bool one = kept == 1u || kept == 2u || kept == 4u;  // the odd one is ahead
+        Corner cut1, cut2;
+        if (one) {
+            cut1 = cut_edge(corner[n1], corner[odd]);
+            cut2 = cut_edge(corner[n2], corner[odd]);
+        } else {
+            cut1 = cut_edge(corner[odd], corner[n1]);
+            cut2 = cut_edge(corner[odd], corner[n2]);
+        }
         Corner first[3] = Corner[3](one ? corner[odd] : corner[n1], one ? cut1 : corner[n2], one ? cut2 : cut1);
-        draw_triangle(t, first, leaf);
+        draw_triangle(first, leaf);
         if (!one) {
             Corner second[3] = Corner[3](corner[n2], cut2, cut1);
-            draw_triangle(t, second, leaf);
+            draw_triangle(second, leaf);
         }
     }
 }

@@ -1,6 +1,5 @@
 #version 460
-// Lines of one instance and part, two vertices each; the second carries the line's
-// own width over the part's mean.
+// Lines of one instance and part, two vertices each; the second carries the line's own width over the part's mean.
 // A line is a parallelogram cut along its steeper axis: at each step it covers the pixels whose centres lie within
 // half its slanted width, so that it covers length * width in the mean at any direction and any width.
 #extension GL_GOOGLE_include_directive : require
@@ -19,7 +18,7 @@ void main() {
         uvec4 v1 = texelFetch(vertices, int(entry.first_vertex + i * 2u + 1u));
         vec4 p0 = vec4(uintBitsToFloat(v0.xyz), 1.0), p1 = vec4(uintBitsToFloat(v1.xyz), 1.0);
         float w0 = dot(t.to_w, p0), w1 = dot(t.to_w, p1);
-        if (max(w0, w1) < near_m) continue;
+        if (!(max(w0, w1) >= near_m)) continue;  // behind, or not a number
         // Cut at the near plane: the end behind it moves onto it.
         float cut = clamp((near_m - w0) / (w1 - w0), 0.0, 1.0);
         vec4 on_plane = mix(p0, p1, cut);
@@ -34,6 +33,7 @@ void main() {
         if (a.x > b.x) { vec2 swap = a; a = b; b = swap; depths = depths.yx; }
         vec2 limit = vec2(steep ? size.yx : size);
         float span = b.x - a.x;
+        if (!(span < 1.0e7 && abs(a.y) + abs(b.y) < 1.0e7)) continue;  // overflowed: coordinates no plant has
         float slope = span > 0.0 ? (b.y - a.y) / span : 0.0;
         float depth_slope = span > 0.0 ? (depths.y - depths.x) / span : 0.0;
         float width = min(entry.size_px * uintBitsToFloat(v1.w) * sqrt(1.0 + slope * slope), 64.0);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 #include "plugins/vegetation/cull/frustum.h"
+#include "runtime/core/log.h"
 #include "shaders/raster_big_triangles.comp.h"
 #include "shaders/raster_lines.comp.h"
 #include "shaders/raster_triangles.comp.h"
@@ -12,7 +13,7 @@
 namespace coppice {
 namespace {
 
-constexpr uint32_t k_big_triangle_limit = 1u << 21;
+constexpr uint32_t k_first_big_triangles = 1u << 18;
 constexpr uint32_t k_first_instances = 1u << 14, k_first_entries = 1u << 16;
 constexpr uint32_t k_pixels_a_group = 256;  // resolve.comp's k_run
 
@@ -46,14 +47,36 @@ Result<std::unique_ptr<Rasteriser>> Rasteriser::create(const gpu::Device& device
         gpu::BufferSettings light = device_buffer(sizeof(LightBlock), "light");
         light.memory = gpu::MemoryUse::upload;
         COPPICE_TRY(rasteriser->slots_[slot].light, gpu::Buffer::create(device, light));
+        gpu::BufferSettings count = device_buffer(sizeof(uint32_t), "big count");
+        count.memory = gpu::MemoryUse::readback;
+        COPPICE_TRY(rasteriser->slots_[slot].big_count, gpu::Buffer::create(device, count));
+        rasteriser->slots_[slot].big_count.mapped_as<uint32_t>()[0] = 0;
         COPPICE_CHECK(rasteriser->grow(slot, k_first_instances, k_first_entries));
     }
-    COPPICE_TRY(rasteriser->big_triangles_,
-                gpu::Buffer::create(device, device_buffer(16 + 8ull * k_big_triangle_limit, "big triangles")));
+    COPPICE_CHECK(rasteriser->make_big_triangles(k_first_big_triangles));
     COPPICE_CHECK(rasteriser->set_geometry({}));
     COPPICE_CHECK(rasteriser->resize(width, height));
     rasteriser->add_passes();
     return rasteriser;
+}
+
+Rasteriser::~Rasteriser() { vkDeviceWaitIdle(device_.handle); }
+
+Status Rasteriser::make_big_triangles(uint32_t limit) {
+    uint64_t room = (device_.limits.storage_range_bytes - 16) / 8;
+    uint32_t count = uint32_t(std::min<uint64_t>(limit, room));
+    if (count == big_limit_) return {};
+    vkDeviceWaitIdle(device_.handle);
+    COPPICE_TRY(big_triangles_, gpu::Buffer::create(device_, device_buffer(16 + 8ull * count, "big triangles")));
+    big_limit_ = count;
+    return {};
+}
+
+void Rasteriser::read_big_count(uint32_t slot) {
+    uint32_t count = slots_[slot].big_count.mapped_as<uint32_t>()[0];
+    dropped_triangles_ = count > big_limit_ ? count - big_limit_ : 0;
+    if (dropped_triangles_ == 0) return;
+    if (auto grown = make_big_triangles(count + count / 2); !grown) log_warning("{}", to_string(grown.error()));
 }
 
 Status Rasteriser::make_pipelines() {
@@ -100,13 +123,15 @@ Status Rasteriser::set_geometry(const GeometryData& data) {
                     std::to_string(data.vertices.size()) + " vertices in one scene",
                     "this device takes " + std::to_string(device_.limits.texel_elements));
     vkDeviceWaitIdle(device_.handle);
-    COPPICE_TRY(vertices_, gpu::Buffer::create(device_, texel_buffer(data.vertices.size_bytes(),
+    COPPICE_TRY(gpu::Buffer vertices, gpu::Buffer::create(device_, texel_buffer(data.vertices.size_bytes(),
                                                                      VK_FORMAT_R32G32B32A32_UINT,
                                                                      gpu::MemoryUse::device, "vertices")));
-    COPPICE_TRY(owners_, gpu::Buffer::create(device_, texel_buffer(data.owners.size_bytes(), VK_FORMAT_R32_UINT,
+    COPPICE_TRY(gpu::Buffer owners, gpu::Buffer::create(device_, texel_buffer(data.owners.size_bytes(), VK_FORMAT_R32_UINT,
                                                                    gpu::MemoryUse::device, "owners")));
-    if (!data.vertices.empty()) COPPICE_CHECK(gpu::upload_now(device_, vertices_, 0, std::as_bytes(data.vertices)));
-    if (!data.owners.empty()) COPPICE_CHECK(gpu::upload_now(device_, owners_, 0, std::as_bytes(data.owners)));
+    if (!data.vertices.empty()) COPPICE_CHECK(gpu::upload_now(device_, vertices, 0, std::as_bytes(data.vertices)));
+    if (!data.owners.empty()) COPPICE_CHECK(gpu::upload_now(device_, owners, 0, std::as_bytes(data.owners)));
+    vertices_ = std::move(vertices);
+    owners_ = std::move(owners);
     return {};
 }
 
@@ -119,8 +144,10 @@ Status Rasteriser::resize(uint32_t width, uint32_t height) {
         return fail(ErrorId::limit_exceeded, "", "picture size", std::to_string(width) + "x" + std::to_string(height),
                     "this device takes " + std::to_string(device_.limits.storage_range_bytes / 8) + " pixels");
     vkDeviceWaitIdle(device_.handle);
-    COPPICE_TRY(visibility_, gpu::Buffer::create(device_, device_buffer(pixels * 8, "visibility")));
-    COPPICE_TRY(color_, gpu::Buffer::create(device_, device_buffer(pixels * 4, "color")));
+    COPPICE_TRY(gpu::Buffer visibility, gpu::Buffer::create(device_, device_buffer(pixels * 8, "visibility")));
+    COPPICE_TRY(gpu::Buffer color, gpu::Buffer::create(device_, device_buffer(pixels * 4, "color")));
+    visibility_ = std::move(visibility);
+    color_ = std::move(color);
     width_ = width;
     height_ = height;
     return {};
@@ -129,14 +156,16 @@ Status Rasteriser::resize(uint32_t width, uint32_t height) {
 Status Rasteriser::grow(uint32_t slot, uint32_t instance_count, uint32_t entry_count) {
     vkDeviceWaitIdle(device_.handle);
     uint64_t instance_limit = device_.limits.texel_elements / 4, entry_limit = device_.limits.texel_elements / 2;
-    COPPICE_TRY(slots_[slot].instances,
+    COPPICE_TRY(gpu::Buffer instances,
                 gpu::Buffer::create(device_, texel_buffer(sizeof(WorkInstance) * std::min<uint64_t>(instance_count, instance_limit),
                                                           VK_FORMAT_R32G32B32A32_SFLOAT, gpu::MemoryUse::upload,
                                                           "instances")));
-    COPPICE_TRY(slots_[slot].entries,
+    COPPICE_TRY(gpu::Buffer entries,
                 gpu::Buffer::create(device_, texel_buffer(sizeof(WorkEntry) * std::min<uint64_t>(entry_count, entry_limit),
                                                           VK_FORMAT_R32G32B32A32_UINT, gpu::MemoryUse::upload,
                                                           "entries")));
+    slots_[slot].instances = std::move(instances);
+    slots_[slot].entries = std::move(entries);
     return {};
 }
 
@@ -164,6 +193,7 @@ void Rasteriser::add_passes() {
     visibility_resource_ = graph_.add_buffer("visibility", &visibility_);
     big_resource_ = graph_.add_buffer("big triangles", &big_triangles_);
     color_resource_ = graph_.add_buffer("color", &color_);
+    big_count_resource_ = graph_.add_buffer("big count", &slots_[0].big_count);
 
     graph_.add_pass("clear",
                     {{visibility_resource_, BufferAccess::transfer_write}, {big_resource_, BufferAccess::transfer_write}},
@@ -186,13 +216,22 @@ void Rasteriser::add_passes() {
             big_pipeline_.bind(commands, buffers, &raster_, sizeof raster_);
             big_pipeline_.dispatch(commands, device_.limits.is_cpu ? 64 : 4096);  // groups stride over the list
         });
+    big_count_pass_ = graph_.add_pass(
+        "count big triangles",
+        {{big_resource_, BufferAccess::transfer_read}, {big_count_resource_, BufferAccess::transfer_write}},
+        [this](VkCommandBuffer commands) {
+            VkBufferCopy first_word{0, 0, sizeof(uint32_t)};
+            vkCmdCopyBuffer(commands, big_triangles_.handle(), slots_[slot_].big_count.handle(), 1, &first_word);
+        });
     add_draw("lines", WorkKind::lines, {{visibility_resource_, BufferAccess::compute_atomic}});
     add_draw("points 1 px", WorkKind::points_1, {{visibility_resource_, BufferAccess::compute_atomic}});
     add_draw("points 2 px", WorkKind::points_2, {{visibility_resource_, BufferAccess::compute_atomic}});
     add_draw("points large", WorkKind::points_any, {{visibility_resource_, BufferAccess::compute_atomic}});
     add_draw("points blended", WorkKind::points_blend, {{visibility_resource_, BufferAccess::compute_atomic}});
     graph_.add_pass("resolve",
-                    {{visibility_resource_, BufferAccess::compute_read}, {color_resource_, BufferAccess::compute_write}},
+                    {{visibility_resource_, BufferAccess::compute_read},
+                     {color_resource_, BufferAccess::compute_write},
+                     {big_count_resource_, BufferAccess::host_read}},
                     [this](VkCommandBuffer commands) {
                         const gpu::Buffer* buffers[] = {&visibility_, &color_, &slots_[slot_].light};
                         resolve_pipeline_.bind(commands, buffers, &resolve_, sizeof resolve_);
@@ -204,6 +243,8 @@ void Rasteriser::set_frame(uint32_t slot, const WorkList::Layout& layout, const 
                            bool show_kinds) {
     slot_ = slot;
     layout_ = layout;
+    read_big_count(slot);
+    graph_.set_buffer(big_count_resource_, &slots_[slot].big_count);
     Frustum frustum = make_frustum(camera, width_, height_);
     float half_width = 0.5f * float(width_), half_height = 0.5f * float(height_);
     vec3 row_x = frustum.right * frustum.focal_px + frustum.forward * half_width;
@@ -212,7 +253,7 @@ void Rasteriser::set_frame(uint32_t slot, const WorkList::Layout& layout, const 
     raster_.row_y = vec4(row_y, float(height_));
     raster_.row_w = vec4(frustum.forward, camera.near_m);
     raster_.show_kinds = resolve_.show_kinds = show_kinds ? 1 : 0;
-    raster_.big_triangle_limit = k_big_triangle_limit;
+    raster_.big_triangle_limit = big_limit_;
     resolve_.right = vec4(frustum.right * (1.0f / frustum.focal_px), float(width_));
     resolve_.up = vec4(frustum.up * (1.0f / frustum.focal_px), float(height_));
     resolve_.forward = vec4(frustum.forward, camera.near_m);
@@ -230,7 +271,9 @@ void Rasteriser::set_frame(uint32_t slot, const WorkList::Layout& layout, const 
         graph_.set_active(draw_passes_[kind],
                           layout.groups[kind].entry_count > 0 || layout.lanes[kind].entry_count > 0);
     size_t triangles = size_t(WorkKind::triangles);
-    graph_.set_active(big_pass_, layout.groups[triangles].entry_count > 0 || layout.lanes[triangles].entry_count > 0);
+    bool any = layout.groups[triangles].entry_count > 0 || layout.lanes[triangles].entry_count > 0;
+    graph_.set_active(big_pass_, any);
+    graph_.set_active(big_count_pass_, any);
 }
 
 uint64_t Rasteriser::gpu_bytes() const {

@@ -19,6 +19,7 @@ struct GeometryData {
 
 class Rasteriser {
   public:
+    ~Rasteriser();  // waits for the device
     static Result<std::unique_ptr<Rasteriser>> create(const gpu::Device& device, FrameGraph& graph,
                                                       uint32_t frame_slots, uint32_t width, uint32_t height);
 
@@ -39,6 +40,8 @@ class Rasteriser {
     uint32_t height() const { return height_; }
     const gpu::Buffer& color() const { return color_; }
     const gpu::Buffer& visibility() const { return visibility_; }
+    // Large triangles that found no room in the list of the last finished frame of this slot.
+    uint32_t dropped_triangles() const { return dropped_triangles_; }
     ResourceIndex color_resource() const { return color_resource_; }
     uint64_t gpu_bytes() const;
 
@@ -53,9 +56,12 @@ class Rasteriser {
     };
     struct Slot {
         gpu::Buffer instances, entries, light;
+        gpu::Buffer big_count;  // how many large triangles the frame had; read when the slot comes round again
     };
     Rasteriser(const gpu::Device& device, FrameGraph& graph) : device_(device), graph_(graph) {}
     Status make_pipelines();
+    Status make_big_triangles(uint32_t limit);
+    void read_big_count(uint32_t slot);
     void add_passes();
     void draw(VkCommandBuffer commands, WorkKind kind);
     const gpu::Buffer& last_binding(WorkKind kind) const;
@@ -69,7 +75,9 @@ class Rasteriser {
     gpu::Pipeline big_pipeline_, resolve_pipeline_;
     ResourceIndex visibility_resource_ = 0, color_resource_ = 0, big_resource_ = 0;
     std::array<uint32_t, k_work_kinds> draw_passes_{};
-    uint32_t big_pass_ = 0;
+    uint32_t big_pass_ = 0, big_count_pass_ = 0;
+    ResourceIndex big_count_resource_ = 0;
+    uint32_t big_limit_ = 0, dropped_triangles_ = 0;
 
     // Of the frame about to be recorded.
     uint32_t slot_ = 0;

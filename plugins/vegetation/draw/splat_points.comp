@@ -1,6 +1,7 @@
 #version 460
-// Points of one instance and part. // A point covers the square of side size_px around it, that is, every pixel whose centre lies inside: size_px^2
-// pixels in the mean, also where the side is under a pixel, so the mean coverage is exact at any size.
+// Points of one instance and part. A point covers the square of side size_px around it, that is, every pixel whose
+// centre lies inside: size_px^2 pixels in the mean, also where the side is under a pixel, so the mean coverage is exact
+// at any size.
 #extension GL_GOOGLE_include_directive : require
 #include "plugins/vegetation/draw/raster.glsl"
 

@@ -58,7 +58,7 @@ void WorkPart::add(const PartGeometry& geometry, const PartChoice& choice, uint3
             1);
     triangles += choice.triangles;
     lines += choice.lines;
-    points += choice.points;
+    points += choice.points - choice.skipped_points;
 }
 
 void WorkList::begin(size_t part_count) {

@@ -38,6 +38,8 @@ PartChoice choose_points(const PackedPart& part, float projected_area_px2, const
         choice.triangles =
             round_by_chance((p - stored) / (0.5f * stored) * float(part.triangle_count), chance, part.triangle_count);
         choice.point_owner_min = choice.triangles;
+        choice.skipped_points =
+            uint32_t(uint64_t(part.point_count) * choice.triangles / std::max(part.triangle_count, 1u));
     }
     return choice;
 }
@@ -60,13 +62,16 @@ PartChoice choose_lines(const PackedPart& part, float projected_area_px2, float 
 PartChoice choose_part(const PackedPart& part, const PlantView& view, const FrameSettings& settings, float chance) {
     if (!settings.level_of_detail) return all_triangles(part);
     float area_px2 = projected_area_px2(part, view, settings.projection);
+    // The gain was measured at d' = 1. Points of side d' overlap as points of one pixel do in a picture d' times coarser,
+    // and what the triangles cover does not depend on the resolution: so d' is the unit of length here.
     bool measured = settings.projection == ProjectionMode::measured;
+    float d = std::max(settings.sample_distance_px, 1.0e-3f);
     if (part.kind == PackedPartKind::points) {
-        if (measured && part.point_count > 0) area_px2 *= gain_at(part, area_px2 / float(part.point_count));
+        if (measured && part.point_count > 0) area_px2 *= gain_at(part, area_px2 / (float(part.point_count) * d * d));
         return choose_points(part, area_px2, settings, chance);
     }
     float length_px = projected_length_px(part, view, settings.projection);
-    if (measured && length_px > 0.0f) area_px2 *= gain_at(part, area_px2 / length_px);
+    if (measured && length_px > 0.0f) area_px2 *= gain_at(part, area_px2 / (length_px * d));
     return choose_lines(part, area_px2, length_px, view.pixels_per_meter, settings, chance);
 }
 

@@ -12,6 +12,7 @@ struct PartChoice {
     uint32_t points = 0;
     uint32_t lines = 0;
     uint32_t point_owner_min = 0;  // only points whose triangle is at or past this one are drawn
+    uint32_t skipped_points = 0;   // about how many of `points` that leaves out
     float splat_px = 0.0f;         // side of the square a point covers
     float line_width_px = 0.0f;
 };

@@ -1,5 +1,6 @@
 // Projected area and length of a part on the screen, in pixels (DESIGN section 3, ERRATA 2 and 3).
 #pragma once
+#include <glm/common.hpp>
 #include "plugins/vegetation/lod/settings.h"
 #include "plugins/vegetation/plant/plant.h"
 
@@ -11,11 +12,13 @@ struct PlantView {
     float pixels_per_meter;  // on the image at the plant's distance, times its scale: f / r * scale. Finite, >= 0
 };
 
-// pixels_per_meter for a plant whose centre is distance_m away. r is clamped below at r_min_m, so that a viewer inside
-// a plant gets a large but finite number (ERRATA 3).
-inline float pixels_per_meter(float focal_px, float distance_m, float r_min_m, float scale) {
-    float r = distance_m > r_min_m ? distance_m : r_min_m;
-    return focal_px / r * scale;
+// pixels_per_meter for a plant of radius_m whose centre is distance_m away. Within two radii r moves from the centre
+// towards the nearest point, since what is near decides what can be seen of holes; it is clamped below at r_min_m, so
+// that a viewer inside a plant gets a large but finite number (ERRATA 3).
+inline float pixels_per_meter(float focal_px, float distance_m, float radius_m, float r_min_m, float scale) {
+    float closeness = radius_m > 0.0f ? glm::clamp(2.0f - distance_m / radius_m, 0.0f, 1.0f) : 0.0f;
+    float r = distance_m - 0.7f * radius_m * closeness;
+    return focal_px / (r > r_min_m ? r : r_min_m) * scale;
 }
 
 // A'_p in square pixels: what the part would cover if none of it hid another piece of it.

@@ -38,7 +38,7 @@ enum class PackedPartKind : uint32_t { points = 0, lines = 1 };
 
 // Coverage gains at log2(fill) = -(k_gain_levels - 1) ... 0, where fill is the projected area in square
 // pixels over the number of points, or over the projected length of the lines in pixels: how finely the part
-// is resolved.
+// is resolved at d' = 1.
 inline constexpr uint32_t k_gain_levels = 10;
 
 // One part, or one octree cell's share of a part. 256 bytes.
@@ -86,8 +86,8 @@ struct Plant {
 };
 
 // Everything is checked before it is used: magic, version, block bounds (overflow-safe), checksums, that all
-// ranges of parts lie inside their blocks, that all positions are finite. Errors: file_*, format_unknown,
-// value_out_of_range.
+// ranges of parts follow each other through their blocks without gaps, that all positions are finite and within
+// k_position_limit_m (description.h). Errors: file_*, format_unknown, value_out_of_range.
 Result<Plant> load_plant(const std::string& path);
 Result<Plant> load_plant_from_memory(std::shared_ptr<const std::vector<std::byte>> bytes,
                                      const std::string& name);

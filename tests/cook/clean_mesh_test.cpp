@@ -34,15 +34,24 @@ TEST(CleanMesh, DropsAndCountsTrianglesWithoutArea) {
     shapes::add_triangle(part, a, b, b * 2.0f);  // on a line
     shapes::add_triangle(part, a, b, vec3(NAN, 0, 0));
     shapes::add_triangle(part, a, b, vec3(0, INFINITY, 0));
-    shapes::add_triangle(part, a, b, vec3(0, 0, 1e9f));  // further than any plant
     shapes::add_triangle(part, a, vec3(1e-30f, 0, 0), vec3(0, 1e-30f, 0));
     shapes::add_vertex(part, c, vec3(0, 1, 0));  // used by nothing
     CleanCounts counts;
     PartDescription cleaned = clean(part, counts);
     EXPECT_EQ(cleaned.indices.size(), 3u);
     EXPECT_EQ(cleaned.vertices.size(), 3u);
-    EXPECT_EQ(counts.dropped_triangles, 7u);
-    EXPECT_EQ(counts.dropped_vertices, 7u * 3 + 1);
+    EXPECT_EQ(counts.dropped_triangles, 6u);
+    EXPECT_EQ(counts.dropped_vertices, 6u * 3 + 1);
+}
+
+TEST(CleanMesh, RefusesWhatIsFurtherThanAnyPlant) {
+    PartDescription part;
+    shapes::add_triangle(part, vec3(0), vec3(1, 0, 0), vec3(0, k_position_limit_m, 0));
+    CleanCounts counts;
+    EXPECT_EQ(clean(part, counts).indices.size(), 3u);
+    part.vertices[2].position_plant.y *= 1.001f;
+    EXPECT_EQ(refused(part), ErrorId::value_out_of_range);
+    EXPECT_EQ(counts.dropped_triangles, 0u);
 }
 
 TEST(CleanMesh, KeepsSmallTrianglesThatHaveAnArea) {

@@ -179,6 +179,59 @@ TEST(ImportErrors, ExtrasThatCannotBeMeant) {
     }
 }
 
+TEST(ImportErrors, FurtherThanAnyPlant) {
+    for (float scale : {1.0e5f, 1.01e5f}) {
+        TinyGltf gltf;
+        add_triangle(gltf);
+        std::string s = std::to_string(scale);
+        gltf.node("\"mesh\":0,\"scale\":[" + s + "," + s + "," + s + "]");
+        if (scale == 1.0e5f)
+            EXPECT_TRUE(gltf.import());
+        else
+            expect_error(gltf, ErrorId::value_out_of_range, "meshes[0].primitives[0]");
+    }
+}
+
+// Nothing in the file backs such vertices: a kilobyte could ask for gigabytes, a million times.
+TEST(ImportErrors, ManyVerticesOutOfNothing) {
+    TinyGltf gltf;
+    int zeros = gltf.accessor(-1, 5126, "VEC3", 22'000'000), indices = gltf.indices({0, 1, 2});
+    gltf.mesh("\"POSITION\":" + std::to_string(zeros) + ",\"NORMAL\":" + std::to_string(zeros),
+              "\"indices\":" + std::to_string(indices));
+    int places = gltf.accessor(-1, 5126, "VEC3", 1'000'000);
+    gltf.node("\"mesh\":0,\"extensions\":{\"EXT_mesh_gpu_instancing\":{\"attributes\":{\"TRANSLATION\":" +
+              std::to_string(places) + "}}}");
+    expect_error(gltf, ErrorId::limit_exceeded, "accessors[0]");
+}
+
+TEST(ImportErrors, TooManyVertices) {
+    TinyGltf gltf;
+    add_triangle(gltf);
+    for (int i = 0; i < 5; ++i) gltf.node("\"mesh\":0");
+    ImportSettings settings;
+    settings.vertex_limit = 14;
+    Error error = error_of(gltf.import(settings));
+    EXPECT_EQ(error.id, ErrorId::limit_exceeded);
+    EXPECT_EQ(error.place, "meshes[0].primitives[0]");
+    settings.vertex_limit = 15;
+    EXPECT_TRUE(gltf.import(settings));
+    settings.vertex_limit = 2;
+    EXPECT_EQ(error_of(gltf.import(settings)).fault, "3 vertices");
+}
+
+// The primitives of one mesh are read together, before the first of them is placed.
+TEST(ImportErrors, ManyPrimitivesOfOneArray) {
+    TinyGltf gltf;
+    std::string position = std::to_string(gltf.positions({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+    gltf.mesh("\"POSITION\":" + position + "}},{\"attributes\":{\"POSITION\":" + position);
+    gltf.node("\"mesh\":0");
+    ImportSettings settings;
+    settings.triangle_limit = 1;
+    Error error = error_of(gltf.import(settings));
+    EXPECT_EQ(error.id, ErrorId::limit_exceeded);
+    EXPECT_EQ(error.place, "meshes[0].primitives[1]");
+}
+
 TEST(ImportErrors, TooManyTriangles) {
     TinyGltf gltf;
     add_triangle(gltf);

@@ -308,5 +308,30 @@ TEST(ImportGltf, SameBytesTwice) {
               0);
 }
 
+TEST(ImportGltf, DropsAndCountsUnusedVerticesBeforePlacing) {
+    for (bool with_normals : {false, true}) {
+        TinyGltf gltf;
+        std::vector<vec3> positions(1000, vec3(7)), normals(1000, vec3(0, 0, 1));
+        positions[10] = vec3(0);
+        positions[500] = vec3(1, 0, 0);
+        positions[999] = vec3(0, 1, 0);
+        normals[500] = vec3(0, 1, 0);
+        std::string attributes = "\"POSITION\":" + std::to_string(gltf.positions(positions));
+        if (with_normals) attributes += ",\"NORMAL\":" + std::to_string(gltf.vectors(normals));
+        gltf.mesh(attributes, "\"indices\":" + std::to_string(gltf.indices({10, 500, 999})));
+        for (int i = 0; i < 50; ++i) gltf.node("\"mesh\":0");
+        ImportSettings settings;
+        settings.vertex_limit = 1000;  // 50 x 1000 would be too many
+        auto plant = gltf.import(settings);
+        ASSERT_TRUE(plant) << to_string(plant.error());
+        const PartDescription& part = plant->parts.at(0);
+        ASSERT_EQ(part.vertices.size(), 150u);
+        EXPECT_EQ(plant->dropped_vertices, 997u);
+        EXPECT_EQ(part.vertices[part.indices[4]].position_plant, vec3(1, 0, 0));
+        EXPECT_EQ(part.vertices[part.indices[4]].normal_plant, with_normals ? vec3(0, 1, 0) : vec3(0, 0, 1));
+        EXPECT_NEAR(area_of(part), 25.0, 1e-3);
+    }
+}
+
 }  // namespace
 }  // namespace coppice

@@ -136,6 +136,9 @@ TEST(LoadPlant, RefusesValuesNoPlantCanHave) {
     EXPECT_EQ(id_of(load_changed([](PlantBlocks& b) { b.triangle_vertices[5].z_plant = INFINITY; })),
               k_wrong);
     EXPECT_EQ(id_of(load_changed([](PlantBlocks& b) { b.line_vertices[0].x_plant = -INFINITY; })), k_wrong);
+    EXPECT_EQ(id_of(load_changed([](PlantBlocks& b) { b.points[0].x_plant = 1.001e5f; })), k_wrong);
+    EXPECT_EQ(id_of(load_changed([](PlantBlocks& b) { b.line_vertices[3].z_plant = -2e5f; })), k_wrong);
+    EXPECT_TRUE(load_changed([](PlantBlocks& b) { b.triangle_vertices[0].x_plant = -1e5f; }));
     EXPECT_EQ(id_of(load_changed([](PlantBlocks& b) { b.point_owners[2] = 2; })), k_wrong);
     EXPECT_EQ(id_of(load_changed([](PlantBlocks& b) { b.parts[0].importance = 0; })), k_wrong);
     EXPECT_EQ(id_of(load_changed([](PlantBlocks& b) { b.parts[0].coverage_gain[3] = 0; })), k_wrong);
@@ -150,6 +153,26 @@ TEST(LoadPlant, RefusesValuesNoPlantCanHave) {
     EXPECT_EQ(id_of(load_changed([](PlantBlocks& b) { std::memset(b.parts[0].name, 'x', 32); })), k_wrong);
 }
 
+// Ranges that overlap would be checked and drawn once a part: a small file, and any amount of work.
+TEST(LoadPlant, RefusesPartsThatDoNotFollowEachOther) {
+    auto error_of = [](void (*change)(PlantBlocks&)) {
+        auto plant = load_changed(change);
+        EXPECT_FALSE(plant);
+        return plant ? Error{} : plant.error();
+    };
+    auto overlap = error_of([](PlantBlocks& b) { b.parts.push_back(b.parts[0]); });
+    EXPECT_EQ(overlap.id, ErrorId::value_out_of_range);
+    EXPECT_EQ(overlap.place, "parts[2]");
+    EXPECT_EQ(error_of([](PlantBlocks& b) { b.parts[1].first_point = 2; }).place, "parts[1]");
+    EXPECT_EQ(error_of([](PlantBlocks& b) { b.parts[1].first_line = 1, b.parts[1].line_count = 1; }).place,
+              "parts[1]");
+    EXPECT_EQ(error_of([](PlantBlocks& b) { b.parts[1].line_count = 1; }).place, "parts")
+        << "a line of no part";
+    EXPECT_EQ(
+        error_of([](PlantBlocks& b) { b.parts[0].triangle_count = 1, b.parts[1].first_triangle = 1; }).id,
+        ErrorId::value_out_of_range);
+}
+
 TEST(LoadPlant, SaysWhatOtherFilesAre) {
     std::vector<std::byte> text(1000, std::byte('x'));
     EXPECT_EQ(load(text).error().id, ErrorId::format_unknown);
@@ -161,7 +184,9 @@ TEST(LoadPlant, SaysWhatOtherFilesAre) {
 }
 
 TEST(LoadPlant, MapsAFile) {
-    std::string path = (std::filesystem::temp_directory_path() / ("coppice_load_test_" + std::to_string(::getpid()) + ".plant")).string();
+    std::string path = (std::filesystem::temp_directory_path() /
+                        ("coppice_load_test_" + std::to_string(::getpid()) + ".plant"))
+                           .string();
     ASSERT_TRUE(write_file(path, pack_plant(small_plant())));
     auto plant = load_plant(path);
     ASSERT_TRUE(plant) << to_string(plant.error());

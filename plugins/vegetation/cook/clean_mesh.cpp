@@ -6,7 +6,6 @@
 namespace coppice {
 namespace {
 
-constexpr float k_position_limit_m = 1e5f;
 constexpr double k_flatness = 1e-7;  // height of a triangle over its longest edge, under which it has no area
 
 bool usable_position(vec3 p) {
@@ -15,6 +14,8 @@ bool usable_position(vec3 p) {
 }
 
 float usable_color(float c) { return c == c ? std::clamp(c, 0.0f, 1.0f) : 0.5f; }
+
+bool beyond_limit(vec3 p) { return is_finite(p) && !usable_position(p); }
 
 bool has_area(vec3 a, vec3 b, vec3 c) {
     if (!usable_position(a) || !usable_position(b) || !usable_position(c)) return false;
@@ -67,6 +68,11 @@ Result<PartDescription> clean_mesh(const PartDescription& part, const std::strin
     std::vector<uint32_t> new_index(part.vertices.size(), k_unused);
     for (uint32_t t = 0; t < triangle_count; ++t) {
         const uint32_t* corner = &part.indices[3 * size_t(t)];
+        for (int k = 0; k < 3; ++k)
+            if (vec3 p = part.vertices[corner[k]].position_plant; beyond_limit(p))
+                return wrong(
+                    fmt::format("position {} is ({}, {}, {})", corner[k], p.x, p.y, p.z),
+                    fmt::format("metres, at most {} km from the origin", k_position_limit_m * 1e-3f));
         bool keep = has_area(part.vertices[corner[0]].position_plant, part.vertices[corner[1]].position_plant,
                              part.vertices[corner[2]].position_plant);
         kept_before[t + 1] = kept_before[t] + keep;

@@ -8,6 +8,9 @@
 
 namespace coppice {
 
+// Of every coordinate of a plant, in the description and packed. Beyond it a float no longer resolves a leaf.
+inline constexpr float k_position_limit_m = 1e5f;
+
 // What a part turns into in the distance. automatic: the cook decides by shape.
 enum class PartKind : uint8_t { automatic, points, lines };
 
@@ -42,6 +45,7 @@ struct PartDescription {
 struct PlantDescription {
     std::string name;
     std::vector<PartDescription> parts;
+    uint32_t dropped_vertices = 0;  // of the author's file, used by no triangle and left out already
 };
 
 }  // namespace coppice

@@ -1,6 +1,7 @@
 #include <atomic>
 #include <bit>
 #include <cstring>
+#include "plugins/vegetation/plant/description.h"
 #include "plugins/vegetation/plant/format.h"
 #include "plugins/vegetation/plant/plant.h"
 #include "runtime/core/hash.h"
@@ -15,17 +16,18 @@ constexpr const char* k_block_names[k_block_count] = {"parts", "triangle vertice
 constexpr uint64_t k_item_bytes[k_block_count] = {
     sizeof(PackedPart), sizeof(PackedVertex), sizeof(PackedVertex), sizeof(uint32_t), sizeof(PackedVertex)};
 
-bool positions_finite(std::span<const PackedVertex> vertices) {
-    std::atomic<bool> finite{true};
+bool positions_usable(std::span<const PackedVertex> vertices) {
+    std::atomic<bool> usable{true};
     parallel_for(vertices.size(), 1 << 16, [&](size_t first, size_t last) {
         bool all = true;
         for (size_t i = first; i < last; ++i) {
             const PackedVertex& v = vertices[i];
-            all &= std::isfinite(v.x_plant) && std::isfinite(v.y_plant) && std::isfinite(v.z_plant);
+            all &= std::fabs(v.x_plant) <= k_position_limit_m && std::fabs(v.y_plant) <= k_position_limit_m &&
+                   std::fabs(v.z_plant) <= k_position_limit_m;  // false for NaN
         }
-        if (!all) finite = false;
+        if (!all) usable = false;
     });
-    return finite;
+    return usable;
 }
 
 bool all_finite(std::span<const float> values) {
@@ -34,18 +36,27 @@ bool all_finite(std::span<const float> values) {
     return true;
 }
 
-// Null where the part can be used, else what is wrong with it.
-const char* fault_of_part(const PackedPart& part, const Plant& plant) {
-    auto inside = [](uint64_t first, uint64_t count, uint64_t limit) {
-        return first <= limit && count <= limit - first;
+// Where a part's ranges must begin: parts follow each other without gaps, so that every primitive belongs to
+// one part and is checked once.
+struct PartBegin {
+    uint64_t triangle = 0, point = 0, line = 0;
+};
+
+// Null where the part can be used, else what is wrong with it. Moves `begin` behind the part.
+const char* fault_of_part(const PackedPart& part, const Plant& plant, PartBegin& begin) {
+    auto take = [](uint64_t first, uint64_t count, uint64_t limit, uint64_t& at) {
+        bool fits = first == at && count <= limit - first;
+        at += count;
+        return fits;
     };
     if (std::memchr(part.name, 0, sizeof part.name) == nullptr) return "the name does not end";
     if (part.kind != PackedPartKind::points && part.kind != PackedPartKind::lines) return "an unknown kind";
-    if (!inside(part.first_triangle, part.triangle_count, plant.triangle_vertices.size() / 3))
-        return "triangles outside the file";
-    if (!inside(part.first_point, part.point_count, plant.points.size())) return "points outside the file";
-    if (!inside(part.first_line, part.line_count, plant.line_vertices.size() / 2))
-        return "lines outside the file";
+    if (!take(part.first_triangle, part.triangle_count, plant.triangle_vertices.size() / 3, begin.triangle))
+        return "triangles that do not follow the part before, or outside the file";
+    if (!take(part.first_point, part.point_count, plant.points.size(), begin.point))
+        return "points that do not follow the part before, or outside the file";
+    if (!take(part.first_line, part.line_count, plant.line_vertices.size() / 2, begin.line))
+        return "lines that do not follow the part before, or outside the file";
     if (!(part.importance > 0.0f) || !std::isfinite(part.importance))
         return "an importance that is not positive";
     const float measures[] = {
@@ -134,15 +145,20 @@ Result<Plant> view_plant(std::span<const std::byte> bytes, const std::string& fi
     if (plant.point_owners.size() != plant.points.size()) return wrong("point owners", "not one a point");
     if (!all_finite(head.bounds_min) || !all_finite(head.bounds_max) || plant.bounds_plant.empty())
         return wrong("head", "the bounds are not a box");
+    PartBegin begin;
     for (size_t i = 0; i < plant.parts.size(); ++i)
-        if (const char* fault = fault_of_part(plant.parts[i], plant))
+        if (const char* fault = fault_of_part(plant.parts[i], plant, begin))
             return wrong("parts[" + std::to_string(i) + "]", fault);
-    if (!positions_finite(plant.triangle_vertices))
-        return wrong("triangle vertices", "a position is not finite");
-    if (!positions_finite(plant.points)) return wrong("points", "a position is not finite");
-    if (!positions_finite(plant.line_vertices)) return wrong("line vertices", "a position is not finite");
+    if (begin.triangle != plant.triangle_vertices.size() / 3 || begin.point != plant.points.size() ||
+        begin.line != plant.line_vertices.size() / 2)
+        return wrong("parts", "triangles, points or lines that belong to no part");
+    constexpr const char* k_far = "a position that is not finite, or further than 100 km from the origin";
+    if (!positions_usable(plant.triangle_vertices)) return wrong("triangle vertices", k_far);
+    if (!positions_usable(plant.points)) return wrong("points", k_far);
+    if (!positions_usable(plant.line_vertices)) return wrong("line vertices", k_far);
     for (size_t i = 1; i < plant.line_vertices.size(); i += 2)
-        if (float width = std::bit_cast<float>(plant.line_vertices[i].surface); !(width > 0.0f && width <= 100.0f))
+        if (float width = std::bit_cast<float>(plant.line_vertices[i].surface);
+            !(width > 0.0f && width <= 100.0f))
             return wrong("line vertices", "a width that is not in (0, 100]");
     return plant;
 }

@@ -30,9 +30,10 @@ struct DirectionForm {
     float evaluate(vec3 d) const;
 };
 
-inline constexpr uint32_t k_part_closed = 1;        // of a closed surface only the front half can be seen
-inline constexpr uint32_t k_part_leaf = 2;          // lit from both sides
-inline constexpr uint32_t k_part_faces_outwards = 4;  // closed, and wound so that back faces need not be drawn
+inline constexpr uint32_t k_part_closed = 1;  // of a closed surface only the front half can be seen
+inline constexpr uint32_t k_part_leaf = 2;    // lit from both sides
+inline constexpr uint32_t k_part_faces_outwards =
+    4;  // closed, and wound so that back faces need not be drawn
 
 enum class PackedPartKind : uint32_t { points = 0, lines = 1 };
 
@@ -43,10 +44,10 @@ inline constexpr uint32_t k_gain_levels = 10;
 
 // One part, or one octree cell's share of a part. 256 bytes.
 struct PackedPart {
-    char name[32];        // UTF-8, zero-terminated
-    PackedPartKind kind;  // what stands for its triangles in the distance
-    uint32_t flags;       // k_part_*
-    float importance;     // > 0, multiplies the primitive counts
+    char name[32];                            // UTF-8, zero-terminated
+    PackedPartKind kind;                      // what stands for its triangles in the distance
+    uint32_t flags;                           // k_part_*
+    float importance;                         // > 0, multiplies the primitive counts
     uint32_t first_triangle, triangle_count;  // k; in progressive order: every prefix is well spread
     uint32_t first_point, point_count;        // n_p; progressive; 0 where kind is lines
     uint32_t first_line, line_count;          // n_l; progressive; 0 where kind is points
@@ -77,17 +78,18 @@ struct Plant {
     std::span<const uint32_t>
         point_owners;  // for each point, its triangle's index within the part: the blend draws
                        // triangles [0, t) and the points whose owner is >= t
-    std::span<const PackedVertex> line_vertices;  // two a line; the second one's surface is not a surface but the
-                                                  // line's own width over the part's mean, as float bits, in (0, 100]
-    uint32_t dropped_triangles = 0;               // zero area or not finite, left out by the cook
-    uint32_t dropped_vertices = 0;                // used by no triangle
-    std::shared_ptr<const MappedFile> file;       // keeps the spans alive; or:
+    std::span<const PackedVertex>
+        line_vertices;               // two a line; the second one's surface is not a surface but the
+                                     // line's own width over the part's mean, as float bits, in (0, 100]
+    uint32_t dropped_triangles = 0;  // zero area or not finite, left out by the cook
+    uint32_t dropped_vertices = 0;   // used by no triangle
+    std::shared_ptr<const MappedFile> file;  // keeps the spans alive; or:
     std::shared_ptr<const std::vector<std::byte>> memory;
 };
 
 // Everything is checked before it is used: magic, version, block bounds (overflow-safe), checksums, that all
-// ranges of parts follow each other through their blocks without gaps, that all positions are finite and within
-// k_position_limit_m (description.h). Errors: file_*, format_unknown, value_out_of_range.
+// ranges of parts follow each other through their blocks without gaps, that all positions are finite and
+// within k_position_limit_m (description.h). Errors: file_*, format_unknown, value_out_of_range.
 Result<Plant> load_plant(const std::string& path);
 Result<Plant> load_plant_from_memory(std::shared_ptr<const std::vector<std::byte>> bytes,
                                      const std::string& name);

@@ -8,6 +8,8 @@
 namespace coppice {
 namespace {
 
+constexpr uint64_t k_zeros_limit = uint64_t(1) << 22;  // numbers that a few bytes of JSON may ask for
+
 size_t size_of(uint32_t component_type) {
     return component_type == k_gltf_byte || component_type == k_gltf_ubyte     ? 1
            : component_type == k_gltf_short || component_type == k_gltf_ushort ? 2
@@ -113,10 +115,10 @@ Result<std::vector<Value>> read_all(const GltfDocument& document, const GltfBuff
                            });
     } else {
         // Nothing in the file backs these zeros, so their number is limited more tightly.
-        if (accessor.count * accessor.components > (uint64_t(1) << 26))
+        if (accessor.count * accessor.components > k_zeros_limit)
             return fail(ErrorId::limit_exceeded, document.file, place,
                         std::to_string(accessor.count) + " elements without a buffer view",
-                        "at most 67108864 numbers");
+                        "at most " + std::to_string(k_zeros_limit) + " numbers");
         values.resize(accessor.count * accessor.components);
     }
     if (!accessor.sparse) return values;

@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include "plugins/vegetation/cook/import/gltf_accessor.h"
+#include "plugins/vegetation/plant/description.h"
 
 namespace coppice {
 namespace {
-
-// Positions beyond this are no plant's; their products would overflow.
-constexpr float k_position_limit_m = 1.0e6f;
 
 struct Reader {
     const GltfDocument& document;
@@ -56,9 +54,34 @@ std::vector<uint32_t> unroll(const std::vector<uint32_t>& order, GltfPrimitive::
     return triangles;
 }
 
+// Many primitives may share one large vertex buffer, and each place of a mesh copies it.
+void drop_unused_vertices(ImportMesh& mesh) {
+    constexpr uint32_t k_unused = UINT32_MAX;
+    std::vector<uint32_t> new_index(mesh.positions_plant.size(), k_unused);
+    for (uint32_t index : mesh.indices) new_index[index] = 0;
+    uint32_t kept = 0;
+    for (uint32_t& index : new_index)
+        if (index != k_unused) index = kept++;
+    mesh.dropped_vertices = uint32_t(new_index.size()) - kept;
+    if (mesh.dropped_vertices == 0) return;
+    auto compact = [&]<class T>(std::vector<T>& values) {
+        if (values.empty()) return;
+        std::vector<T> used(kept);
+        for (size_t v = 0; v < values.size(); ++v)
+            if (new_index[v] != k_unused) used[new_index[v]] = values[v];
+        values = std::move(used);
+    };
+    compact(mesh.positions_plant);
+    compact(mesh.normals_plant);
+    compact(mesh.colors_linear);
+    compact(mesh.uvs);
+    for (uint32_t& index : mesh.indices) index = new_index[index];
+}
+
 // Every triangle gets its own three vertices and its own normal.
 ImportMesh make_flat(const ImportMesh& mesh) {
     ImportMesh flat;
+    flat.dropped_vertices = mesh.dropped_vertices;
     size_t count = mesh.indices.size();
     flat.positions_plant.reserve(count);
     for (size_t i = 0; i < count; ++i) {
@@ -86,7 +109,7 @@ vec2 transform_uv(vec2 uv, const GltfTextureUse& use, float sine, float cosine) 
 
 Result<ImportMesh> read_primitive_mesh(const GltfDocument& document, const GltfBuffers& buffers,
                                        const GltfPrimitive& primitive, const std::string& place,
-                                       size_t triangle_limit) {
+                                       size_t triangle_limit, size_t vertex_limit) {
     Reader reader{document, buffers, place};
     ImportMesh mesh;
     if (primitive.mode == GltfPrimitive::Mode::other) return mesh;
@@ -98,10 +121,16 @@ Result<ImportMesh> read_primitive_mesh(const GltfDocument& document, const GltfB
     uint64_t vertex_count = document.accessors[primitive.position].count;
     uint64_t corner_count =
         primitive.indices == k_gltf_none ? vertex_count : document.accessors[primitive.indices].count;
-    if (vertex_count / 3 > triangle_limit || corner_count / 3 > triangle_limit)
+    uint64_t triangle_count = primitive.mode == GltfPrimitive::Mode::triangles ? corner_count / 3
+                              : corner_count > 2                               ? corner_count - 2
+                                                                               : 0;
+    if (triangle_count > triangle_limit)
         return fail(ErrorId::limit_exceeded, document.file, place,
-                    std::to_string(std::max(vertex_count, corner_count)) + " vertices",
-                    "at most " + std::to_string(triangle_limit) + " triangles in a plant");
+                    "too many triangles: " + std::to_string(triangle_count),
+                    "at most " + std::to_string(triangle_limit) + " more in this plant");
+    if (vertex_count > vertex_limit)
+        return fail(ErrorId::limit_exceeded, document.file, place, std::to_string(vertex_count) + " vertices",
+                    "at most " + std::to_string(vertex_limit));
     COPPICE_TRY(auto positions, reader.attribute(primitive.position, "POSITION", 3, 3, vertex_count));
     mesh.positions_plant.resize(vertex_count);
     for (size_t i = 0; i < vertex_count; ++i) mesh.positions_plant[i] = vec3_at(positions, i, 3);
@@ -152,11 +181,15 @@ Result<ImportMesh> read_primitive_mesh(const GltfDocument& document, const GltfB
     }
     mesh.indices = unroll(order, primitive.mode);
 
-    if (primitive.normal == k_gltf_none) return make_flat(mesh);
+    if (primitive.normal == k_gltf_none) {
+        drop_unused_vertices(mesh);
+        return make_flat(mesh);
+    }
     COPPICE_TRY(auto normals, reader.attribute(primitive.normal, "NORMAL", 3, 3, vertex_count));
     mesh.normals_plant.resize(vertex_count);
     for (size_t i = 0; i < vertex_count; ++i)
         mesh.normals_plant[i] = normalize_or(vec3_at(normals, i, 3), vec3(0, 1, 0));
+    drop_unused_vertices(mesh);
     return mesh;
 }
 
@@ -175,7 +208,7 @@ Result<ImportMesh> transform_mesh(const ImportMesh& mesh, const mat4& plant_from
         if (!is_finite(p) || std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)}) > k_position_limit_m)
             return fail(ErrorId::value_out_of_range, file, place,
                         "position " + std::to_string(i) + " is out of range",
-                        "metres, at most 1000 km from the origin");
+                        "metres, at most 100 km from the origin");
         vec3& n = placed.normals_plant[i];
         n = normalize_or(cofactor * n, n);
     }

@@ -10,11 +10,12 @@
 
 namespace coppice {
 
-// In mesh space. Points and lines give an empty mesh; the caller says so. place: "meshes[2].primitives[0]".
+// In mesh space, vertices no triangle uses dropped and counted. Points and lines give an empty mesh; the
+// caller says so. place: "meshes[2].primitives[0]". The limits are checked before anything is allocated.
 // Errors: value_out_of_range, format_unknown (Draco), limit_exceeded.
 Result<ImportMesh> read_primitive_mesh(const GltfDocument& document, const GltfBuffers& buffers,
                                        const GltfPrimitive& primitive, const std::string& place,
-                                       size_t triangle_limit);
+                                       size_t triangle_limit, size_t vertex_limit);
 
 // Errors: value_out_of_range where a position leaves what a float holds.
 Result<ImportMesh> transform_mesh(const ImportMesh& mesh, const mat4& plant_from_mesh,

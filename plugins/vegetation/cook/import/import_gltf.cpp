@@ -20,7 +20,8 @@ namespace coppice {
 namespace {
 
 constexpr size_t k_placement_limit = size_t(1) << 20;
-constexpr size_t k_least_added = 2000;  // triangles that dividing may add to any plant
+constexpr size_t k_piece_limit = size_t(1) << 20;  // primitives, once for each place
+constexpr size_t k_least_added = 2000;             // triangles that dividing may add to any plant
 
 bool names_any(const std::string& name, std::initializer_list<std::string_view> words) {
     std::string lower = name;
@@ -162,13 +163,17 @@ class Importer {
     Result<std::vector<Prepared>> prepare_mesh(uint32_t mesh_index) {
         std::vector<Prepared> prepared;
         const GltfMesh& mesh = document_.meshes[mesh_index];
+        bool is_new = counted_meshes_.insert(mesh_index).second;
+        size_t triangles_left = settings_.triangle_limit - triangle_count_;
         for (size_t p = 0; p < mesh.primitives.size(); ++p) {
             const GltfPrimitive& primitive = mesh.primitives[p];
-            if (primitive.mode == GltfPrimitive::Mode::other) ++skipped_primitives_;
+            if (is_new && primitive.mode == GltfPrimitive::Mode::other) ++skipped_primitives_;
             Prepared& ready = prepared.emplace_back();
             COPPICE_TRY(ready.mesh,
                         read_primitive_mesh(document_, buffers_, primitive, primitive_place(mesh_index, p),
-                                            settings_.triangle_limit));
+                                            triangles_left, settings_.vertex_limit));
+            triangles_left -= ready.mesh.triangle_count();
+            if (is_new) dropped_vertices_ += ready.mesh.dropped_vertices;
             find_elements(ready.mesh);
             if (primitive.material == k_gltf_none || ready.mesh.indices.empty()) continue;
             COPPICE_CHECK(apply_alpha(document_.materials[primitive.material], primitive.material, ready));
@@ -253,7 +258,15 @@ class Importer {
         if (prepared.mesh.triangle_count() > settings_.triangle_limit - triangle_count_)
             return fail(ErrorId::limit_exceeded, document_.file, place, "too many triangles",
                         "at most " + std::to_string(settings_.triangle_limit) + " in a plant");
+        if (prepared.mesh.positions_plant.size() > settings_.vertex_limit - vertex_count_)
+            return fail(ErrorId::limit_exceeded, document_.file, place, "too many vertices",
+                        "at most " + std::to_string(settings_.vertex_limit) + " in a plant");
+        if (pieces_.size() == k_piece_limit)
+            return fail(
+                ErrorId::limit_exceeded, document_.file, place, "too many primitives, each place counted",
+                "at most " + std::to_string(k_piece_limit) + " in a plant; join them in the modelling tool");
         triangle_count_ += prepared.mesh.triangle_count();
+        vertex_count_ += prepared.mesh.positions_plant.size();
         COPPICE_TRY(ImportMesh mesh,
                     transform_mesh(prepared.mesh, placement.plant_from_mesh, document_.file, place));
         pieces_.push_back({std::move(mesh), find_part(placement, primitive), prepared.texture});
@@ -299,7 +312,8 @@ class Importer {
         }
         for (size_t p = 0; p < parts_.size(); ++p)
             if (parts_[p].leaf) group_by_element(parts_[p], elements[p], element_counts[p]);
-        return PlantDescription{plant_name, std::move(parts_)};
+        return PlantDescription{plant_name, std::move(parts_),
+                                uint32_t(std::min<uint64_t>(dropped_vertices_, UINT32_MAX))};
     }
 
     // Triangles of one element next to each other, elements in order. Elements that lost all their triangles
@@ -328,7 +342,9 @@ class Importer {
     std::map<std::string, uint32_t> name_uses_;
     std::vector<PartDescription> parts_;
     std::vector<Piece> pieces_;
-    size_t triangle_count_ = 0, masked_triangle_count_ = 1;
+    size_t triangle_count_ = 0, vertex_count_ = 0, masked_triangle_count_ = 1;
+    uint64_t dropped_vertices_ = 0;
+    std::set<uint32_t> counted_meshes_;   // their dropped vertices and skipped primitives count once
     std::set<uint32_t> whole_materials_;  // masked, but nothing to cut
     size_t skipped_primitives_ = 0;
 };

@@ -31,6 +31,8 @@ struct ImportSettings {
     float texture_detail_m = 0.02f;           // opaque textured triangles with longer edges are divided,
     uint32_t added_triangle_limit = 20'000;   // as far as this many more triangles allow
     size_t triangle_limit = size_t(1) << 25;  // of the plant
+    size_t vertex_limit =
+        size_t(1) << 26;  // of the plant, without those no triangle uses; and of any one mesh
     uint64_t size_limit_bytes = uint64_t(1) << 30;  // of the file and its buffers
 };
 

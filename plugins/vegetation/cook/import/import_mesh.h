@@ -15,6 +15,7 @@ struct ImportMesh {
     std::vector<uint32_t>
         elements;  // of each triangle: which connected piece (one leaf, one card) it belongs to
     uint32_t element_count = 0;
+    uint32_t dropped_vertices = 0;  // used by no triangle
     size_t triangle_count() const { return indices.size() / 3; }
 };
 

@@ -12,8 +12,11 @@
 namespace coppice {
 namespace {
 
-// Pixels of one picture: 16384 x 16384 would be a GiB of a few hostile kilobytes.
+// A few hostile kilobytes can announce any picture.
 constexpr uint64_t k_pixel_limit = uint64_t(1) << 27;
+constexpr uint64_t k_decoded_limit_bytes = uint64_t(1) << 29;  // what we allocate
+constexpr uint64_t k_stored_limit_bytes = uint64_t(1)
+                                          << 30;  // all channels as stored: what a decoder may allocate
 constexpr size_t k_file_limit_bytes = size_t(1) << 30;
 
 struct Format {
@@ -56,15 +59,25 @@ tl::unexpected<Error> corrupt(const std::string& name, std::string fault) {
                 "a whole, undamaged picture");
 }
 
-Status check_header(const OIIO::ImageSpec& spec, const std::string& name) {
+// decoded_bytes_per_pixel: of what is made of it.
+Status check_header(const OIIO::ImageSpec& spec, const std::string& name, size_t decoded_bytes_per_pixel) {
     if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1 || spec.deep)
         return corrupt(name, "the header announces no flat picture");
-    if (spec.width > int(k_picture_side_limit) || spec.height > int(k_picture_side_limit) || spec.depth > 1 ||
-        spec.nchannels > 64 || uint64_t(spec.width) * uint64_t(spec.height) > k_pixel_limit)
+    bool small_sides = spec.width <= int(k_picture_side_limit) && spec.height <= int(k_picture_side_limit) &&
+                       spec.depth <= 1 && spec.nchannels <= 64;
+    uint64_t pixels = uint64_t(spec.width) * uint64_t(spec.height);
+    uint64_t pixel_bytes = spec.pixel_bytes(true);
+    // Tiles may be larger than their picture. Their sides fit 31 bits each, so the product does not overflow.
+    uint64_t tile_pixels = spec.tile_width > 0 && spec.tile_height > 0
+                               ? uint64_t(spec.tile_width) * uint64_t(spec.tile_height)
+                               : 0;
+    if (!small_sides || pixels > k_pixel_limit || pixels * pixel_bytes > k_stored_limit_bytes ||
+        tile_pixels > k_stored_limit_bytes / pixel_bytes || spec.tile_depth > 1 ||
+        pixels * decoded_bytes_per_pixel > k_decoded_limit_bytes)
         return fail(ErrorId::limit_exceeded, name, "header",
                     "a picture of " + std::to_string(spec.width) + "x" + std::to_string(spec.height) +
                         " with " + std::to_string(spec.nchannels) + " channels",
-                    "sides of at most 16384, 134 million pixels and 64 channels");
+                    "sides of at most 16384, 134 million pixels and 64 channels, and 512 MiB decoded");
     return {};
 }
 
@@ -84,20 +97,27 @@ template <class Value>
 Result<std::vector<Value>> decode(OIIO::ImageInput& input, const std::string& name, bool with_alpha,
                                   Value opaque) {
     OIIO::ImageSpec spec = input.spec();
-    COPPICE_CHECK(check_header(spec, name));
-    size_t pixels = size_t(spec.width) * size_t(spec.height), stored = size_t(spec.nchannels);
-    std::vector<Value> raw(pixels * stored);
-    if (!input.read_image(0, 0, 0, spec.nchannels, OIIO::BaseTypeFromC<Value>::value, raw.data()))
+    const size_t count = with_alpha ? 4 : 3;
+    COPPICE_CHECK(check_header(spec, name, count * sizeof(Value)));
+    const size_t pixels = size_t(spec.width) * size_t(spec.height);
+    const Channels from = choose_channels(spec);
+    std::vector<Value> values(pixels * count, opaque);
+    // Only the channels that are needed, straight to their places.
+    auto read_channels = [&](int first, int channels, size_t to) {
+        return input.read_image(0, 0, first, first + channels, OIIO::BaseTypeFromC<Value>::value,
+                                values.data() + to, OIIO::stride_t(count * sizeof(Value)));
+    };
+    const bool grey = from.green == from.red, alpha = with_alpha && from.alpha >= 0;
+    const bool alpha_follows = alpha && !grey && from.alpha == 3;
+    if (!read_channels(from.red,
+                       grey            ? 1
+                       : alpha_follows ? 4
+                                       : 3,
+                       0) ||
+        (alpha && !alpha_follows && !read_channels(from.alpha, 1, 3)))
         return corrupt(name, input.geterror());
-    Channels from = choose_channels(spec);
-    size_t count = with_alpha ? 4 : 3;
-    std::vector<Value> values(pixels * count);
-    for (size_t i = 0; i < pixels; ++i) {
-        values[i * count] = raw[i * stored + size_t(from.red)];
-        values[i * count + 1] = raw[i * stored + size_t(from.green)];
-        values[i * count + 2] = raw[i * stored + size_t(from.blue)];
-        if (with_alpha) values[i * 4 + 3] = from.alpha < 0 ? opaque : raw[i * stored + size_t(from.alpha)];
-    }
+    if (grey)
+        for (size_t i = 0; i < pixels; ++i) values[i * count + 1] = values[i * count + 2] = values[i * count];
     return values;
 }
 

@@ -1,5 +1,5 @@
-// Pictures out of files and memory by OpenImageIO. Nothing is allocated before the header's sides are
-// checked.
+// Pictures out of files and memory by OpenImageIO. Nothing is allocated before the header's sides, channels
+// and tiles are checked; a decoded picture takes at most 512 MiB.
 #pragma once
 #include <cstddef>
 #include <span>

@@ -38,6 +38,47 @@ class Images : public ::testing::Test {
         return picture;
     }
 
+    // An uncompressed little-endian TIFF of 8-bit samples, pixel by pixel; what it announces need not be
+    // there.
+    static std::vector<std::byte> tiff(uint32_t width, uint32_t height, uint16_t channels,
+                                       std::span<const uint8_t> samples, uint32_t tile_side = 0) {
+        struct Entry {
+            uint16_t tag, type;
+            uint32_t count, value;
+        };
+        const uint32_t bytes = uint32_t(samples.size());
+        std::vector<Entry> entries{{256, 4, 1, width},
+                                   {257, 4, 1, height},
+                                   {258, 3, channels, 0},
+                                   {259, 3, 1, 1},
+                                   {262, 3, 1, channels < 3 ? 1u : 2u}};
+        if (!tile_side) entries.push_back({273, 4, 1, 0});
+        entries.push_back({277, 3, 1, channels});
+        if (!tile_side) entries.insert(entries.end(), {{278, 4, 1, height}, {279, 4, 1, bytes}});
+        if (tile_side)
+            entries.insert(
+                entries.end(),
+                {{322, 4, 1, tile_side}, {323, 4, 1, tile_side}, {324, 4, 1, 0}, {325, 4, 1, bytes}});
+        const uint32_t color_channels = channels < 3 ? 1 : 3, extra = channels - color_channels;
+        const uint32_t bits_at = 8 + 2 + 12 * uint32_t(entries.size() + (extra ? 1 : 0)) + 4;
+        const uint32_t extra_at = bits_at + 2u * channels, samples_at = extra_at + 2 * extra;
+        if (extra) entries.push_back({338, 3, extra, extra > 2 ? extra_at : 2});  // the first is alpha
+        std::string file("II*\0\10\0\0\0", 8);
+        auto put = [&file](auto value) { file.append(reinterpret_cast<const char*>(&value), sizeof value); };
+        put(uint16_t(entries.size()));
+        for (Entry entry : entries) {
+            if (entry.tag == 258) entry.value = channels > 2 ? bits_at : channels == 2 ? 0x00080008u : 8u;
+            if (entry.tag == 273 || entry.tag == 324) entry.value = samples_at;
+            put(entry.tag), put(entry.type), put(entry.count), put(entry.value);
+        }
+        put(uint32_t(0));
+        for (uint32_t c = 0; c < channels; ++c) put(uint16_t(8));
+        for (uint32_t c = 0; c < extra; ++c) put(uint16_t(c == 0 ? 2 : 0));
+        file.append(reinterpret_cast<const char*>(samples.data()), samples.size());
+        auto first = reinterpret_cast<const std::byte*>(file.data());
+        return {first, first + file.size()};
+    }
+
     static inline Registry* registry_ = nullptr;
     const ImagesInterface* images_ = nullptr;
     std::filesystem::path folder_;
@@ -99,6 +140,35 @@ TEST_F(Images, HugeSidesAreRefusedBeforeDecoding) {
     ASSERT_FALSE(text);
     EXPECT_EQ(text.error().id, ErrorId::format_unknown);
     EXPECT_EQ(images_->read(folder_ / "missing.png").error().id, ErrorId::file_missing);
+}
+
+TEST_F(Images, TakesTheChannelsItNeeds) {
+    auto pixels_of = [&](uint16_t channels, std::vector<uint8_t> samples) {
+        auto picture = images_->read_memory(tiff(2, 1, channels, samples), "a.tif");
+        EXPECT_TRUE(picture) << (picture ? "" : to_string(picture.error()));
+        return picture ? picture->rgba : std::vector<uint8_t>();
+    };
+    using Bytes = std::vector<uint8_t>;
+    EXPECT_EQ(pixels_of(1, {10, 20}), (Bytes{10, 10, 10, 255, 20, 20, 20, 255}));
+    EXPECT_EQ(pixels_of(2, {10, 90, 20, 91}), (Bytes{10, 10, 10, 90, 20, 20, 20, 91}));
+    EXPECT_EQ(pixels_of(3, {1, 2, 3, 4, 5, 6}), (Bytes{1, 2, 3, 255, 4, 5, 6, 255}));
+    EXPECT_EQ(pixels_of(4, {1, 2, 3, 90, 4, 5, 6, 91}), (Bytes{1, 2, 3, 90, 4, 5, 6, 91}));
+    EXPECT_EQ(pixels_of(6, {1, 2, 3, 90, 7, 8, 4, 5, 6, 91, 9, 10}), (Bytes{1, 2, 3, 90, 4, 5, 6, 91}));
+}
+
+TEST_F(Images, AFewBytesThatAnnounceGigabytesAreRefused) {
+    const uint8_t some[16] = {};
+    for (const auto& bytes : {tiff(4096, 4097, 64, some), tiff(16384, 8192, 9, some),
+                              tiff(64, 64, 64, some, 16384), tiff(64, 64, 3, some, 1u << 30)}) {
+        auto picture = images_->read_memory(bytes, "huge.tif");
+        ASSERT_FALSE(picture);
+        EXPECT_EQ(picture.error().id, ErrorId::limit_exceeded) << to_string(picture.error());
+        EXPECT_EQ(picture.error().place, "header");
+    }
+    // As floats the same sides are four times the bytes.
+    std::string path = folder_ / "huge.tif";
+    ASSERT_TRUE(write_file(path, tiff(8192, 8192, 3, some)));
+    EXPECT_EQ(images_->read_float(path).error().id, ErrorId::limit_exceeded);
 }
 
 TEST_F(Images, FailedWriteLeavesTheOldFile) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <bit>
 #include "plugins/vegetation/plant/plant.h"
+#include "runtime/core/hash.h"
 #include "runtime/core/jobs.h"
 #include "tests/cook/shapes.h"
 
@@ -145,6 +146,21 @@ TEST(CookPlant, SameBytesOnOneAndTwoThreads) {
     EXPECT_TRUE(*one == *two);
 }
 
+// Made with gcc 12; clang and any number of threads must give it too.
+TEST(CookPlant, EveryCompilerGivesTheSameBytes) {
+    PlantDescription tree = small_tree();
+    for (unsigned threads : {1u, 2u}) {
+        set_thread_limit(threads);
+        auto bytes = cook_plant(tree, {});
+        set_thread_limit(0);
+        ASSERT_TRUE(bytes);
+        EXPECT_EQ(hash_to_hex(hash_bytes(bytes->data(), bytes->size())), "8666f0e509b7e6a1")
+            << threads
+            << " threads\nIf the cook was changed on purpose: raise k_cook_version (cook_plant.h), else "
+            << "plants of the old form stay in the caches, and write the new hash here.";
+    }
+}
+
 TEST(CookPlant, TakesOneTriangle) {
     PlantDescription plant;
     plant.name = "one";
@@ -187,6 +203,46 @@ TEST(CookPlant, LeavesEmptyPartsOutAndRefusesEmptyPlants) {
     Plant packed = cook(plant);
     ASSERT_EQ(packed.parts.size(), 1u);
     EXPECT_STREQ(packed.parts[0].name, "something");
+}
+
+TEST(CookPlant, RefusesMorePointsAndLinesThanItsLimit) {
+    auto refusal_of = [](const PlantDescription& plant, uint32_t limit, float points_per_triangle) {
+        CookSettings settings;
+        settings.sampler = PointSampler::area;
+        settings.points_per_triangle = points_per_triangle;
+        settings.primitive_limit = limit;
+        auto cooked = cook_plant(plant, settings);
+        return cooked ? Error{ErrorId::inconclusive, "", "", "", ""} : cooked.error();
+    };
+    PlantDescription leaves;
+    leaves.name = "leaves";
+    leaves.parts = {shapes::leaf_cloud(50, 1, 0.1f, 1), shapes::leaf_cloud(50, 1, 0.1f, 2)};
+    EXPECT_EQ(refusal_of(leaves, 12800, 64).id, ErrorId::inconclusive);
+    Error refusal = refusal_of(leaves, 12799, 64);  // of both parts together
+    EXPECT_EQ(refusal.id, ErrorId::limit_exceeded);
+    EXPECT_EQ(refusal.fault, "12800 points");
+    EXPECT_EQ(refusal.file, "leaves");
+
+    PlantDescription stems;
+    stems.name = "stems";
+    stems.parts.resize(2);
+    for (PartDescription& part : stems.parts)
+        for (int i = 0; i < 3; ++i)
+            shapes::add_tube(part, shapes::straight_path(vec3(float(i), 0, 0), vec3(float(i), 1, 0), 4),
+                             std::vector<float>(4, 0.01f));
+    EXPECT_EQ(refusal_of(stems, 1000, 2).id, ErrorId::inconclusive);
+    EXPECT_EQ(refusal_of(stems, 5, 2).id, ErrorId::limit_exceeded);
+}
+
+// What the importer left out counts as well.
+TEST(CookPlant, CountsDroppedVerticesOfBothStages) {
+    PlantDescription plant;
+    plant.name = "one";
+    plant.parts.emplace_back();
+    shapes::add_triangle(plant.parts[0], vec3(0), vec3(1, 0, 0), vec3(0, 0, 1));
+    shapes::add_vertex(plant.parts[0], vec3(0), vec3(0, 1, 0));
+    plant.dropped_vertices = 10;
+    EXPECT_EQ(cook(plant).dropped_vertices, 11u);
 }
 
 TEST(CookPlant, RefusesSettingsThatCannotBeMeant) {

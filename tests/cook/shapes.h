@@ -37,8 +37,8 @@ inline PartDescription leaf_cloud(uint32_t leaf_count, float radius_m, float sid
     part.leaf = true;
     Random random(seed);
     for (uint32_t i = 0; i < leaf_count; ++i) {
-        vec3 place =
-            center + random_direction(random) * (radius_m * portable_pow(random.next_unit(), 1.0f / 3));
+        vec3 outwards = random_direction(random);  // one after the other: operands have no order
+        vec3 place = center + outwards * (radius_m * portable_pow(random.next_unit(), 1.0f / 3));
         vec3 normal = random_direction(random);
         vec3 u = rotate_about(perpendicular_to(normal), normal, random.next_in(0, 2 * k_pi));
         add_quad(part, place, u * side_m, glm::cross(normal, u) * side_m);

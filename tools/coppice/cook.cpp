@@ -53,6 +53,7 @@ Status run(const CookCommand& command) {
 void add_cook(CLI::App& app, Command& chosen) {
     auto command = std::make_shared<CookCommand>();
     CookSettings& settings = command->settings;
+    settings.show_progress = true;
     CLI::App* cook = app.add_subcommand("cook", "Make a packed plant from a species file or a glTF model");
     cook->footer(k_examples);
     cook->add_option("plant", command->source, "*.json (species), *.glb or *.gltf")->required();

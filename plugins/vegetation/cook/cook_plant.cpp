@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <optional>
 #include <tuple>
 #include <fmt/format.h>
 #include "plugins/vegetation/cook/classify.h"
@@ -10,6 +11,7 @@
 #include "plugins/vegetation/cook/importance.h"
 #include "plugins/vegetation/cook/measure_coverage.h"
 #include "plugins/vegetation/cook/measure_projection.h"
+#include "plugins/vegetation/cook/merge_parts.h"
 #include "plugins/vegetation/cook/openness.h"
 #include "plugins/vegetation/cook/space_curve.h"
 #include "plugins/vegetation/cook/trace_lines.h"
@@ -18,6 +20,7 @@
 #include "plugins/vegetation/plant/pack.h"
 #include "runtime/core/hash.h"
 #include "runtime/core/jobs.h"
+#include "runtime/core/log.h"
 #include "runtime/core/progress.h"
 
 namespace coppice {
@@ -25,14 +28,6 @@ namespace {
 
 constexpr uint32_t k_triangle_limit = 1u << 26;  // of a plant: 3 GiB of vertices
 constexpr size_t k_grain = 1 << 13;
-
-struct CookPart {
-    SlenderPart shape;
-    bool closed;
-    double area_m2;
-    vec3 mean_color_linear;
-    float importance;
-};
 
 PackedVertex pack_vertex(vec3 position, const Surface& surface, uint32_t dither) {
     return {position.x, position.y, position.z, encode_surface(surface, dither)};
@@ -50,12 +45,17 @@ std::pair<double, vec3> measure_area_and_color(const PartDescription& mesh) {
     return {area_m2, vec3(color * (1.0 / area_m2))};
 }
 
+SampleSettings sample_settings(const CookSettings& settings, uint64_t seed) {
+    return {settings.sampler, settings.order, settings.points_per_triangle, seed};
+}
+
 // Appends one part to the plant. seed: of this part.
 class PartPacker {
   public:
-    PartPacker(const CookPart& part, const OpennessGrid& openness, const CookSettings& settings,
-               uint64_t seed, PlantBlocks& plant)
+    PartPacker(const CookPart& part, float importance, const OpennessGrid& openness,
+               const CookSettings& settings, uint64_t seed, PlantBlocks& plant)
         : part_(part),
+          importance_(importance),
           mesh_(part.shape.part),
           openness_(openness),
           settings_(settings),
@@ -63,13 +63,13 @@ class PartPacker {
           plant_(plant),
           dither_seed_(uint32_t(seed)) {}
 
-    void run() {
+    Status run() {
         copy_name(mesh_.name, packed_.name, sizeof packed_.name);
         bool lines = mesh_.kind == PartKind::lines;
         packed_.kind = lines ? PackedPartKind::lines : PackedPartKind::points;
         packed_.flags = (part_.closed ? k_part_closed : 0u) | (mesh_.leaf ? k_part_leaf : 0u) |
                         (part_.closed && !mesh_.leaf && faces_outwards() ? k_part_faces_outwards : 0u);
-        packed_.importance = part_.importance;
+        packed_.importance = importance_;
         packed_.area_m2 = float(part_.area_m2);
         packed_.projected_area_m2 = fit_direction_form(projected_areas_m2(mesh_, part_.closed));
         for (int c = 0; c < 3; ++c) packed_.mean_color_linear[c] = part_.mean_color_linear[c];
@@ -77,10 +77,11 @@ class PartPacker {
         packed_.first_point = uint32_t(plant_.points.size());
         packed_.first_line = uint32_t(plant_.line_vertices.size() / 2);
         pack_triangles();
-        if (lines)
-            pack_lines();
-        else
+        if (lines) {
+            COPPICE_CHECK(pack_lines());
+        } else {
             pack_points();
+        }
         for (int axis = 0; axis < 3; ++axis) {
             packed_.bounds_min[axis] = bounds_.min[axis];
             packed_.bounds_max[axis] = bounds_.max[axis];
@@ -91,6 +92,7 @@ class PartPacker {
             std::span(plant_.line_vertices).subspan(2 * size_t(packed_.first_line)));
         plant_.bounds_plant.include(bounds_);
         plant_.parts.push_back(packed_);
+        return {};
     }
 
   private:
@@ -149,8 +151,8 @@ class PartPacker {
     }
 
     void pack_points() {
-        SampleSettings sample{settings_.sampler, settings_.order, settings_.points_per_triangle, seed_};
-        std::vector<SampledPoint> points = sample_points(mesh_, curve_, triangle_order_, sample).points;
+        std::vector<SampledPoint> points =
+            sample_points(mesh_, curve_, triangle_order_, sample_settings(settings_, seed_)).points;
         std::vector<uint32_t> place_of(triangle_order_.size());
         for (uint32_t i = 0; i < place_of.size(); ++i) place_of[triangle_order_[i]] = i;
         size_t first = plant_.points.size();
@@ -177,8 +179,11 @@ class PartPacker {
             packed_.point_radius_m = float(std::sqrt(part_.area_m2 / (double(points.size()) * double(k_pi))));
     }
 
-    void pack_lines() {
+    Status pack_lines() {
         TracedLines traced = trace_lines(mesh_, part_.shape.skeleton);
+        if (traced.lines.size() > settings_.primitive_limit - plant_.line_vertices.size() / 2)
+            return fail(ErrorId::limit_exceeded, plant_.name, mesh_.name, "too many lines",
+                        fmt::format("at most {} in a plant", settings_.primitive_limit));
         std::vector<vec3> centers, ends;
         dvec3 color(0);
         for (const TracedLine& line : traced.lines) {
@@ -218,9 +223,11 @@ class PartPacker {
         packed_.line_length_m = traced.length_m;
         packed_.line_error_m = traced.error_m;
         packed_.projected_length_m = fit_direction_form(projected_lengths_m(ends));
+        return {};
     }
 
     const CookPart& part_;
+    float importance_;
     const PartDescription& mesh_;
     const OpennessGrid& openness_;
     const CookSettings& settings_;
@@ -265,33 +272,52 @@ Result<std::vector<std::byte>> cook_plant(const PlantDescription& plant, const C
         return fail(ErrorId::limit_exceeded, plant.name, "", fmt::format("{} triangles", triangle_count),
                     fmt::format("at most {} a plant", k_triangle_limit));
     blocks.dropped_triangles = dropped.dropped_triangles;
-    blocks.dropped_vertices = dropped.dropped_vertices;
+    blocks.dropped_vertices = dropped.dropped_vertices + plant.dropped_vertices;
 
-    Progress progress("cooking " + plant.name, 2 * triangle_count);
+    std::optional<Progress> progress;
+    if (settings.show_progress) progress.emplace("cooking " + plant.name, 2 * triangle_count);
+    auto advance = [&progress](uint64_t steps) {
+        if (progress) progress->advance(steps);
+    };
     std::vector<std::vector<uint32_t>> welded(meshes.size());
     std::vector<bool> closed;
-    std::vector<ColoredArea> colors;
     for (size_t i = 0; i < meshes.size(); ++i) {
         welded[i] = weld_positions(meshes[i].vertices);
         closed.push_back(closed_share(meshes[i], welded[i]) >= k_closed_share);
-        auto [area_m2, mean_color] = measure_area_and_color(meshes[i]);
-        colors.push_back({mean_color, area_m2, meshes[i].importance});
     }
     OpennessGrid openness(meshes, closed);
-    std::vector<float> importance = choose_importance(colors);
     std::vector<CookPart> parts;
     for (size_t i = 0; i < meshes.size(); ++i) {
         uint64_t steps = meshes[i].indices.size() / 3;
         for (SlenderPart& shape : classify_part(std::move(meshes[i]), welded[i], closed[i])) {
-            CookPart part{std::move(shape), closed[i], 0.0, vec3(0), importance[i]};
+            CookPart part{std::move(shape), closed[i]};
             std::tie(part.area_m2, part.mean_color_linear) = measure_area_and_color(part.shape.part);
             parts.push_back(std::move(part));
         }
-        progress.advance(steps);
+        advance(steps);
     }
+    if (parts.size() > k_part_limit) {
+        log_note("{}: {} parts are merged into at most {}, like with like", plant.name, parts.size(),
+                 k_part_limit);
+        parts = merge_parts(std::move(parts));
+    }
+
+    uint64_t point_count = 0;
+    std::vector<ColoredArea> colors;
+    for (const CookPart& part : parts) {
+        const PartDescription& mesh = part.shape.part;
+        if (mesh.kind == PartKind::points) point_count += count_points(mesh, sample_settings(settings, 0));
+        colors.push_back({part.mean_color_linear, part.area_m2, mesh.importance});
+    }
+    if (point_count > settings.primitive_limit)
+        return fail(ErrorId::limit_exceeded, plant.name, "", fmt::format("{} points", point_count),
+                    fmt::format("at most {} a plant: fewer points a triangle", settings.primitive_limit));
+    std::vector<float> importance = choose_importance(colors);
     for (size_t i = 0; i < parts.size(); ++i) {
-        PartPacker(parts[i], openness, settings, hash_combine(settings.seed, i), blocks).run();
-        progress.advance(parts[i].shape.part.indices.size() / 3);
+        COPPICE_CHECK(
+            PartPacker(parts[i], importance[i], openness, settings, hash_combine(settings.seed, i), blocks)
+                .run());
+        advance(parts[i].shape.part.indices.size() / 3);
     }
     return pack_plant(blocks);
 }

@@ -111,6 +111,11 @@ std::vector<SampledPoint> sample_two_per_triangle(const PartDescription& part,
     return points;
 }
 
+PointSampler choose_sampler(const PartDescription& part, PointSampler wanted) {
+    if (wanted != PointSampler::automatic) return wanted;
+    return area_variation(part) < k_equal_areas ? PointSampler::two_per_triangle : PointSampler::area;
+}
+
 }  // namespace
 
 float area_variation(const PartDescription& part) {
@@ -122,20 +127,23 @@ float area_variation(const PartDescription& part) {
     return mean > 0.0 ? float(std::sqrt(square / double(areas.size())) / mean) : 0.0f;
 }
 
+uint64_t count_points(const PartDescription& part, const SampleSettings& settings) {
+    uint64_t triangle_count = part.indices.size() / 3;
+    if (choose_sampler(part, settings.sampler) == PointSampler::two_per_triangle) return 2 * triangle_count;
+    return uint64_t(
+        std::ceil(double(triangle_count) * double(std::clamp(settings.points_per_triangle, 1e-3f, 64.0f))));
+}
+
 SampledPoints sample_points(const PartDescription& part, std::span<const uint32_t> curve,
                             std::span<const uint32_t> triangle_order, const SampleSettings& settings) {
     SampledPoints sampled;
-    sampled.sampler = settings.sampler;
-    if (sampled.sampler == PointSampler::automatic)
-        sampled.sampler =
-            area_variation(part) < k_equal_areas ? PointSampler::two_per_triangle : PointSampler::area;
+    SampleSettings chosen = settings;
+    chosen.sampler = sampled.sampler = choose_sampler(part, settings.sampler);
     if (curve.empty()) return sampled;
-    if (sampled.sampler == PointSampler::two_per_triangle) {
-        sampled.points = sample_two_per_triangle(part, triangle_order, settings);
+    if (chosen.sampler == PointSampler::two_per_triangle) {
+        sampled.points = sample_two_per_triangle(part, triangle_order, chosen);
     } else {
-        double wanted =
-            std::ceil(double(curve.size()) * double(std::clamp(settings.points_per_triangle, 1e-3f, 64.0f)));
-        sampled.points = sample_area(part, curve, settings, uint32_t(std::min(wanted, double(1u << 31))));
+        sampled.points = sample_area(part, curve, chosen, uint32_t(count_points(part, chosen)));
     }
     return sampled;
 }

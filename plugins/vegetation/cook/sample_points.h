@@ -36,9 +36,13 @@ struct SampledPoints {
 // curve: the part's triangles along a space-filling curve (order_along_curve of their centres).
 // With two_per_triangle and `shuffled`, points 2 i and 2 i + 1 belong to triangle triangle_order[i], as in
 // the paper; with `progressive` the first half of the points meets every triangle once, in that order, then
-// the second half. Requires a clean mesh. Parallel; the same on any number of threads.
+// the second half. Requires a clean mesh and count_points below 2^32. Parallel; the same on any number of
+// threads.
 SampledPoints sample_points(const PartDescription& part, std::span<const uint32_t> curve,
                             std::span<const uint32_t> triangle_order, const SampleSettings& settings);
+
+// How many points sample_points makes.
+uint64_t count_points(const PartDescription& part, const SampleSettings& settings);
 
 // Standard deviation of the triangles' areas over their mean.
 float area_variation(const PartDescription& part);

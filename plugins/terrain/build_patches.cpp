@@ -46,8 +46,9 @@ struct Writer {
     const HeightField& field;
     PackedVertex* vertex;
     uint32_t* sample;
-    void put(uint32_t column, uint32_t row, float below_m) {
-        *vertex++ = {field.x_of(column), field.sample(column, row) - below_m, field.z_of(row), 0};
+    void put(uint32_t column, uint32_t row, float below_m = 0.0f, vec2 outwards_m = vec2(0.0f)) {
+        *vertex++ = {field.x_of(column) + outwards_m.x, field.sample(column, row) - below_m,
+                     field.z_of(row) + outwards_m.y, 0};
         *sample++ = row * field.columns + column;
     }
 };
@@ -56,28 +57,30 @@ void write_level(const Patch& patch, uint32_t step, float skirt_m, Writer writer
     uint32_t column_end = patch.column + patch.width, row_end = patch.row + patch.height;
     for (uint32_t row = patch.row; row < row_end; row += step)
         for (uint32_t column = patch.column; column < column_end; column += step) {
-            writer.put(column, row, 0.0f);
-            writer.put(column, row + step, 0.0f);
-            writer.put(column + step, row + step, 0.0f);
-            writer.put(column, row, 0.0f);
-            writer.put(column + step, row + step, 0.0f);
-            writer.put(column + step, row, 0.0f);
+            writer.put(column, row);
+            writer.put(column, row + step);
+            writer.put(column + step, row + step);
+            writer.put(column, row);
+            writer.put(column + step, row + step);
+            writer.put(column + step, row);
         }
-    auto hang = [&](uint32_t c0, uint32_t r0, uint32_t c1, uint32_t r1) {
-        writer.put(c0, r0, 0.0f);
-        writer.put(c0, r0, skirt_m);
-        writer.put(c1, r1, skirt_m);
-        writer.put(c0, r0, 0.0f);
-        writer.put(c1, r1, skirt_m);
-        writer.put(c1, r1, 0.0f);
+    // Skirts lean outwards: one that hangs straight down shows its edge, and the crack, to who looks along the border.
+    auto hang = [&](uint32_t c0, uint32_t r0, uint32_t c1, uint32_t r1, vec2 outwards) {
+        vec2 lean_m = outwards * (0.5f * skirt_m);
+        writer.put(c0, r0);
+        writer.put(c0, r0, skirt_m, lean_m);
+        writer.put(c1, r1, skirt_m, lean_m);
+        writer.put(c0, r0);
+        writer.put(c1, r1, skirt_m, lean_m);
+        writer.put(c1, r1);
     };
     for (uint32_t column = patch.column; column < column_end; column += step) {
-        hang(column + step, patch.row, column, patch.row);
-        hang(column, row_end, column + step, row_end);
+        hang(column + step, patch.row, column, patch.row, vec2(0, -1));
+        hang(column, row_end, column + step, row_end, vec2(0, 1));
     }
     for (uint32_t row = patch.row; row < row_end; row += step) {
-        hang(patch.column, row, patch.column, row + step);
-        hang(column_end, row + step, column_end, row);
+        hang(patch.column, row, patch.column, row + step, vec2(-1, 0));
+        hang(column_end, row + step, column_end, row, vec2(1, 0));
     }
 }
 

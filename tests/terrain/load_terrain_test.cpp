@@ -47,13 +47,22 @@ class TemporaryFile {
 
 vec3 position(const PackedVertex& v) { return {v.x_plant, v.y_plant, v.z_plant}; }
 
-// The triangles of a level, without its skirts: those that face up.
+// Cells along a side of a square patch's level: its surface takes 6 a^2 vertices, its skirts 24 a behind them.
+uint32_t cells_across(const TerrainLevel& level) {
+    uint32_t a = 1;
+    while (6 * a * a + 24 * a < level.vertex_count) ++a;
+    return a;
+}
+
+// The triangles of a level, without its skirts.
 std::vector<std::array<vec3, 3>> upper_triangles(const Terrain& terrain, const TerrainLevel& level) {
     std::vector<std::array<vec3, 3>> triangles;
     for (uint32_t v = level.first_vertex; v < level.first_vertex + level.vertex_count; v += 3) {
         std::array<vec3, 3> t;
         for (uint32_t c = 0; c < 3; ++c) t[c] = position(terrain.vertices()[v + c]);
-        if (glm::cross(t[1] - t[0], t[2] - t[0]).y > 1e-6f) triangles.push_back(t);
+        vec3 normal = glm::cross(t[1] - t[0], t[2] - t[0]);
+        if (normal.y < 0.46f * glm::length(normal)) continue;  // skirts fall two metres in one
+        triangles.push_back(t);
     }
     return triangles;
 }
@@ -113,14 +122,18 @@ TEST(LoadTerrain, SkirtsCoverTheGapsBetweenLevels) {
     struct Edge {
         std::map<int, std::pair<float, float>> span;  // by place along the edge: top and bottom
     };
-    auto edge_at = [&](const TerrainLevel& level, float x) {
+    // Of a patch's border to the east or west: the hanging quads stand in pairs behind those to the north and south.
+    auto edge_at = [&](const TerrainLevel& level, bool east) {
         Edge edge;
-        for (uint32_t v = level.first_vertex; v < level.first_vertex + level.vertex_count; ++v) {
-            vec3 p = position(terrain->vertices()[v]);
-            if (std::fabs(p.x - x) > 1e-3f) continue;
-            auto [it, fresh] = edge.span.try_emplace(int(std::floor(p.z * 100.0f + 0.5f)), p.y, p.y);
-            it->second.first = std::max(it->second.first, p.y);
-            it->second.second = std::min(it->second.second, p.y);
+        uint32_t cells = cells_across(level), first = level.first_vertex + 6 * cells * cells + 12 * cells;
+        for (uint32_t cell = 0; cell < cells; ++cell) {
+            const PackedVertex* quad = &terrain->vertices()[first + 12 * cell + (east ? 6 : 0)];
+            for (auto [top, bottom] : {std::pair(0, 1), std::pair(5, 2)}) {
+                EXPECT_FLOAT_EQ(quad[top].z_plant, quad[bottom].z_plant);
+                EXPECT_EQ(quad[bottom].x_plant > quad[top].x_plant, east);  // leans outwards
+                edge.span[int(std::floor(quad[top].z_plant * 100.0f + 0.5f))] = {quad[top].y_plant,
+                                                                                 quad[bottom].y_plant};
+            }
         }
         return edge;
     };
@@ -134,11 +147,10 @@ TEST(LoadTerrain, SkirtsCoverTheGapsBetweenLevels) {
     };
     size_t gaps = 0;
     for (uint32_t p : {0u, 5u, 9u}) {
-        float x = patches[p].bounds_local.max.x;
         for (uint32_t l = 0; l < 6; ++l)
             for (uint32_t k = 0; k < 6; ++k) {
-                Edge west = edge_at(terrain->levels()[patches[p].first_level + l], x);
-                Edge east = edge_at(terrain->levels()[patches[p + 1].first_level + k], x);
+                Edge west = edge_at(terrain->levels()[patches[p].first_level + l], true);
+                Edge east = edge_at(terrain->levels()[patches[p + 1].first_level + k], false);
                 const Edge& finer = west.span.size() > east.span.size() ? west : east;
                 for (const auto& [z, ignored] : finer.span) {
                     float top_west = between(west, z, true), top_east = between(east, z, true);
@@ -291,10 +303,13 @@ TEST(LoadTerrain, FieldsThatAreNoMultipleOfThePatchAreWhole) {
     for (const TerrainPatch& patch : terrain->patches())
         for (uint32_t l = 0; l < patch.level_count; ++l) {
             double level_area = 0.0;
-            for (const auto& t : upper_triangles(*terrain, terrain->levels()[patch.first_level + l]))
+            Box bounds;
+            for (const auto& t : upper_triangles(*terrain, terrain->levels()[patch.first_level + l])) {
                 level_area += 0.5 * double(glm::cross(t[1] - t[0], t[2] - t[0]).y);
+                for (vec3 corner : t) bounds.include(corner);
+            }
             if (l == 0) area += level_area;
-            vec3 size = patch.bounds_local.size();
+            vec3 size = bounds.size();
             EXPECT_NEAR(level_area, double(size.x * size.z), 0.1);
         }
     EXPECT_NEAR(area, 80.0 * 70.0, 0.1);

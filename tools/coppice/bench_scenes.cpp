@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 #include <string>
+#include <fmt/format.h>
 #include "tools/coppice/figure.h"
 #include "tools/coppice/play_host.h"
 #include "tools/coppice/play_loop.h"
@@ -15,7 +16,7 @@ constexpr uint32_t k_flight_frames = 60;  // spread over the whole path
 
 // Flies a scene of content/scenes from its start to its end in k_flight_frames frames.
 Result<PlayRecord> fly_scene(const BenchSettings& settings, const std::string& scene, PlayOptions options) {
-    options.scene = settings.content + "/scenes/" + scene + ".eco.json";
+    options.scene = fmt::format("{}/scenes/{}.eco.json", settings.content, scene);
     options.headless = true;
     options.device = settings.device;
     options.cache_dir = settings.cache_dir;

@@ -6,6 +6,7 @@
 #include "tools/coppice/play_host.h"
 #include "tools/coppice/play_plot.h"
 #include "tools/coppice/statistics.h"
+#include "tools/coppice/stopwatch.h"
 #include "tools/window/window_interface.h"
 
 namespace coppice {

@@ -20,7 +20,7 @@ Result<PlayRecord> fly_scene(const BenchSettings& settings, const std::string& s
     options.headless = true;
     options.device = settings.device;
     options.cache_dir = settings.cache_dir;
-    options.pictures = "0";
+    options.pictures = std::string("0");  // assigned as a literal, GCC 12 warns of an overlap that cannot be
     options.frames = k_flight_frames;
     COPPICE_TRY(std::unique_ptr<PlayHost> host, PlayHost::create(options));
     const double duration_s = host->scene.camera_path.back().time_s;

@@ -38,7 +38,7 @@ Corner cut_edge(Corner behind, Corner ahead) {
 
 // Rounded up or down by a fixed pattern, so that slow gradients show no bands.
 uint pack_surface(vec3 normal, vec3 color, float openness, uint leaf, ivec2 pixel) {
-    float chance = fract(52.9829189 * fract(dot(vec2(pixel), vec2(0.06711056, 0.00583715))));
+    float chance = dither_chance(pixel);
     vec3 last = vec3(31.0, 63.0, 31.0);
     vec3 low = min(floor(sqrt(clamp(color, 0.0, 1.0)) * last), last - 1.0);
     vec3 low_value = low * low, high_value = (low + 1.0) * (low + 1.0);

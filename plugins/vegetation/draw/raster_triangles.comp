@@ -59,10 +59,12 @@ void main() {
             float column_last = min(ceil(span.y - 0.5), size.x);
             for (float column = max(ceil(span.x - 0.5), 0.0); column < column_last; column += 1.0) {
                 vec3 weight = weights_at(plane, a.xy, vec2(column, row) + 0.5);
-                // So small a triangle shows one vertex a pixel, the one with the most weight.
-                uint surface = weight.x >= max(weight.y, weight.z) ? surface0
-                               : weight.y >= weight.z              ? surface1
-                                                                   : surface2;
+                // So small a triangle shows one of its vertices a pixel, each as often as it weighs: interpolation in
+                // the mean, for a fraction of its price.
+                float chance = dither_chance(ivec2(column, row));
+                uint surface = chance < weight.x              ? surface0
+                               : chance < weight.x + weight.y ? surface1
+                                                              : surface2;
                 write_pixel(ivec2(column, row), dot(weight, depths), surface);
             }
         }

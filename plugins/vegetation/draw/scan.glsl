@@ -41,4 +41,9 @@ vec3 weights_at(Plane plane, vec2 a, vec2 position) {
     return vec3(1.0 - bc.x - bc.y, bc);
 }
 
+// A fixed pattern over the picture with evenly spread values in [0, 1) (interleaved gradient noise, Jimenez 2014).
+float dither_chance(ivec2 pixel) {
+    return fract(52.9829189 * fract(dot(vec2(pixel), vec2(0.06711056, 0.00583715))));
+}
+
 #endif

@@ -2,7 +2,7 @@
 // schedule and its passes in the host's frame graph. A frame of the host:
 //
 //     vegetation->set_camera(camera);  vegetation->set_settings(settings);
-//     schedule.run(world);                          // input, stream, world, cull, lod, shadow, draw, report
+//     schedule.run();                               // of ours: cull, lod, draw, report
 //     frame_graph.record(frame.commands, frame.timestamps);
 //     ... submit; vegetation->color() then holds the picture
 //

@@ -6,32 +6,12 @@
 namespace coppice {
 namespace {
 
-// Rows of the rotation by a unit quaternion.
-struct Rotation {
-    vec3 x, y, z;
-    vec3 apply(vec3 v) const { return vec3(glm::dot(x, v), glm::dot(y, v), glm::dot(z, v)); }
-    vec3 apply_inverse(vec3 v) const { return x * v.x + y * v.y + z * v.z; }
-};
-
-Rotation rotation_of(PlantTurn turn) {
-    constexpr float k_step = 1.0f / 32767.0f;
-    float x = float(turn.x) * k_step, y = float(turn.y) * k_step, z = float(turn.z) * k_step, w = float(turn.w) * k_step;
-    return {vec3(1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
-            vec3(2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
-            vec3(2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y))};
-}
-
-WorkInstance instance_of(const Rotation& rotation, float scale, vec3 position) {
-    auto row = [scale](vec3 axis, float offset, float (&out)[4]) {
-        out[0] = axis.x * scale;
-        out[1] = axis.y * scale;
-        out[2] = axis.z * scale;
-        out[3] = offset;
-    };
+WorkInstance instance_of(const mat3& rotation, float scale, vec3 position) {
     WorkInstance instance{};
-    row(rotation.x, position.x, instance.rows[0]);
-    row(rotation.y, position.y, instance.rows[1]);
-    row(rotation.z, position.z, instance.rows[2]);
+    for (int row = 0; row < 3; ++row) {
+        for (int column = 0; column < 3; ++column) instance.rows[row][column] = rotation[column][row] * scale;
+        instance.rows[row][3] = position[row];
+    }
     return instance;
 }
 
@@ -43,9 +23,9 @@ ExpandCounts expand_plants(const PlantRun& run, const SceneGeometry& geometry, c
     for (size_t i = 0; i < run.positions.size(); ++i) {
         const PlantPosition& place = run.positions[i];
         const DrawModel& model = geometry.models[run.models[i].model];
-        Rotation rotation = rotation_of(run.turns[i]);
+        mat3 rotation = rotation_matrix(run.turns[i]);
         vec3 position = run.origin_camera + vec3(place.x_tile, place.y_tile, place.z_tile);
-        vec3 center = position + rotation.apply(model.center_plant * place.scale);
+        vec3 center = position + rotation * (model.center_plant * place.scale);
         if (!run.inside && !sees_sphere(frustum, center, model.radius_m * place.scale)) continue;
         ++counts.plants_visible;
         counts.full_triangles += model.triangle_count;
@@ -55,7 +35,7 @@ ExpandCounts expand_plants(const PlantRun& run, const SceneGeometry& geometry, c
         view.pixels_per_meter = pixels_per_meter(frustum.focal_px, distance_m, model.radius_m * place.scale,
                                                  frustum.near_m, place.scale);
         view.direction_plant =
-            distance_m > 0.0f ? rotation.apply_inverse(center * (1.0f / distance_m)) : vec3(0.0f, 0.0f, -1.0f);
+            distance_m > 0.0f ? (center * (1.0f / distance_m)) * rotation : vec3(0.0f, 0.0f, -1.0f);
         uint32_t instance = UINT32_MAX;
         for (uint32_t p = 0; p < model.part_count; ++p) {
             uint32_t part = model.first_part + p;
@@ -73,7 +53,7 @@ uint64_t expand_terrain(const Terrain& terrain, uint32_t first_vertex, dvec3 cam
                         const FrameSettings& settings, WorkPart& work) {
     const float error_px = settings.level_of_detail ? 1.0f : 0.0f;
     vec3 origin = vec3(terrain.origin_world() - camera_world);
-    uint32_t instance = work.add_instance(instance_of(rotation_of({0, 0, 0, 32767}), 1.0f, origin));
+    uint32_t instance = work.add_instance(instance_of(mat3(1.0f), 1.0f, origin));
     uint64_t triangles = 0;
     for (const TerrainPatch& patch : terrain.patches()) {
         Box bounds{patch.bounds_local.min + origin, patch.bounds_local.max + origin};

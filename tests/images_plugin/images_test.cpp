@@ -5,6 +5,9 @@
 #include <cstring>
 #include <filesystem>
 #include <unistd.h>
+#ifdef __SANITIZE_ADDRESS__
+#include <sanitizer/lsan_interface.h>
+#endif
 #include "runtime/core/file.h"
 #include "runtime/plugin/registry.h"
 
@@ -115,6 +118,10 @@ TEST_F(Images, FloatsThereAndBackAreExact) {
 TEST_F(Images, TruncatedAndDamagedFilesAreRefusedOrRead) {
     auto bytes = images_->encode_png(gradient(64, 64));
     ASSERT_TRUE(bytes);
+#ifdef __SANITIZE_ADDRESS__
+    // OpenImageIO 2.4 leaves libpng by longjmp past a string of its own: some 30 bytes for each cut PNG.
+    __lsan::ScopedDisabler not_ours;
+#endif
     for (size_t size = 0; size < bytes->size() / 2; size += 7) {
         auto result = images_->read_memory(std::span(*bytes).first(size), "cut.png");
         EXPECT_FALSE(result) << size;

@@ -216,7 +216,8 @@ void color_vertices(const HeightField& field, const GroundSurface& ground, Terra
                         Mean mean = mean_around(field, ground, sample, 1u << shift);
                         // On the border nothing is owed: both patches there must come to the same colour.
                         bool border = column == 0 || row == 0 || column + 1 == across || row + 1 == down;
-                        vec3 wanted = border ? mean.color : mean.color + owed[at], color = nearest_color(wanted);
+                        vec3 wanted = border ? mean.color : mean.color + owed[at],
+                             color = nearest_color(wanted);
                         vec3 rest = (wanted - color) * (1.0f / 16.0f);
                         if (column + 1 < across) {
                             owed[at + 1] += rest * 7.0f;

@@ -20,7 +20,8 @@ namespace coppice {
 namespace {
 
 double now_ms() {
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch())
+        .count();
 }
 
 class VegetationSystems final : public Vegetation {
@@ -28,8 +29,9 @@ class VegetationSystems final : public Vegetation {
     explicit VegetationSystems(const VegetationSettings& settings) : settings_(settings) {}
 
     Status start() {
-        COPPICE_TRY(rasteriser_, Rasteriser::create(*settings_.device, *settings_.frame_graph, settings_.frame_slots,
-                                                    settings_.width, settings_.height));
+        COPPICE_TRY(rasteriser_,
+                    Rasteriser::create(*settings_.device, *settings_.frame_graph, settings_.frame_slots,
+                                       settings_.width, settings_.height));
         Schedule& schedule = *settings_.schedule;
         schedule.add(Phase::cull, 0, "list_tiles", [this](TileList::Plants plants) { list_tiles(plants); });
         // The runs point into the plants' columns, so this reads them too.
@@ -56,7 +58,8 @@ class VegetationSystems final : public Vegetation {
             Entity owner = settings_.world->create(tile);
             tiles_.push_back(owner);
             auto [chunk, positions, turns, models] =
-                settings_.world->create_chunk<PlantPosition, PlantTurn, PlantModel>(source.plant_count, owner);
+                settings_.world->create_chunk<PlantPosition, PlantTurn, PlantModel>(source.plant_count,
+                                                                                    owner);
             if (!chunk) {
                 drop_scene();
                 return fail(ErrorId::limit_exceeded, scene.path, "tiles", "no room for another tile",
@@ -93,10 +96,12 @@ class VegetationSystems final : public Vegetation {
   private:
     Status check_scene(const Scene& scene, size_t plant_count) const {
         auto wrong = [&scene](std::string fault, std::string remedy) {
-            return fail(ErrorId::value_out_of_range, scene.path, "plants", std::move(fault), std::move(remedy));
+            return fail(ErrorId::value_out_of_range, scene.path, "plants", std::move(fault),
+                        std::move(remedy));
         };
         if (plant_count != scene.models.size())
-            return wrong(std::to_string(plant_count) + " packed plants", "one for each of the scene's models");
+            return wrong(std::to_string(plant_count) + " packed plants",
+                         "one for each of the scene's models");
         size_t placed = scene.positions.size();
         if (scene.turns.size() != placed || scene.plant_models.size() != placed)
             return wrong("arrays of different length", "one position, turn and model a plant");
@@ -130,15 +135,17 @@ class VegetationSystems final : public Vegetation {
     void expand() {
         double begin = now_ms();
         size_t run_count = tile_list_.runs().size();
-        work_.begin(run_count + 1);  // the first one is the terrain's: should memory run out, the ground stays
+        work_.begin(run_count +
+                    1);  // the first one is the terrain's: should memory run out, the ground stays
         run_counts_.assign(run_count, {});
         parallel_for(run_count, 1, [this](size_t first, size_t last) {
             for (size_t i = first; i < last; ++i)
-                run_counts_[i] = expand_plants(tile_list_.runs()[i], geometry_, frustum_, frame_, work_.part(i + 1));
+                run_counts_[i] =
+                    expand_plants(tile_list_.runs()[i], geometry_, frustum_, frame_, work_.part(i + 1));
         });
         report_.terrain_triangles =
-            terrain_ ? expand_terrain(*terrain_, geometry_.first_terrain_vertex, camera_.position_world, frustum_,
-                                      frame_, work_.part(0))
+            terrain_ ? expand_terrain(*terrain_, geometry_.first_terrain_vertex, camera_.position_world,
+                                      frustum_, frame_, work_.part(0))
                      : 0;
         report_.lod_ms = now_ms() - begin;
     }
@@ -151,7 +158,8 @@ class VegetationSystems final : public Vegetation {
         if (!fits && size.entries < refused_entries_) {
             // Half as much again, so that a slowly growing list does not stop every frame. Where there is no memory for
             // it, what fits is drawn, the rest counted as dropped, and so much is not asked for again.
-            if (auto grown = rasteriser_->grow(slot_, size.instances + size.instances / 2, size.entries + size.entries / 2);
+            if (auto grown = rasteriser_->grow(slot_, size.instances + size.instances / 2,
+                                               size.entries + size.entries / 2);
                 !grown) {
                 refused_entries_ = size.entries;
                 log_warning("{}", to_string(grown.error()));
@@ -218,7 +226,8 @@ int load(const CoppiceHost* host) {
 }
 void unload() {}
 
-constexpr CoppicePlugin k_plugin{sizeof(CoppicePlugin), COPPICE_PLUGIN_ABI, "vegetation", "0.1.0", &load, &unload};
+constexpr CoppicePlugin k_plugin{
+    sizeof(CoppicePlugin), COPPICE_PLUGIN_ABI, "vegetation", "0.1.0", &load, &unload};
 
 }  // namespace
 }  // namespace coppice

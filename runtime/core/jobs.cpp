@@ -50,7 +50,9 @@ void set_thread_limit(unsigned threads) {
     std::lock_guard lock(g_limit_mutex);
     g_threads = threads;
     g_limit.reset();
-    if (threads) g_limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, threads);
+    if (threads)
+        g_limit =
+            std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, threads);
 }
 
 unsigned thread_limit() {
@@ -64,7 +66,8 @@ void run_jobs(size_t count, size_t grain, JobBody body, void* context) {
     if (g_runner) return g_runner(g_host, count, grain, body, context);
     size_t ranges = (count - 1) / grain + 1;
     if (ranges == 1 || thread_limit() == 1) {
-        for (size_t first = 0; first < count; first += grain) body(context, first, std::min(count, first + grain));
+        for (size_t first = 0; first < count; first += grain)
+            body(context, first, std::min(count, first + grain));
         return;
     }
     run_ranges(ranges, [&](size_t range) {

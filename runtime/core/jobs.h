@@ -22,7 +22,8 @@ void run_jobs(size_t count, size_t grain, JobBody body, void* context);
 template <class Body>
 void parallel_for(size_t count, size_t grain, Body&& body) {
     run_jobs(
-        count, grain, [](void* context, size_t first, size_t last) { (*static_cast<Body*>(context))(first, last); },
+        count, grain,
+        [](void* context, size_t first, size_t last) { (*static_cast<Body*>(context))(first, last); },
         const_cast<void*>(static_cast<const void*>(&body)));
 }
 

@@ -12,7 +12,8 @@ float sin_core(float x) {
 }
 float cos_core(float x) {
     float z = x * x;
-    return 1.0f + z * (-0.5f + z * (4.1666667e-2f + z * (-1.3888889e-3f + z * (2.4801587e-5f - z * 2.7557319e-7f))));
+    return 1.0f +
+           z * (-0.5f + z * (4.1666667e-2f + z * (-1.3888889e-3f + z * (2.4801587e-5f - z * 2.7557319e-7f))));
 }
 
 // Sine of quadrant * pi/2 + remainder.
@@ -24,10 +25,14 @@ float quadrant_sin(float angle_rad, int quadrant_shift) {
     if (!(nearest > -9.0e15 && nearest < 9.0e15)) return quadrant_shift ? 1.0f : 0.0f;
     float remainder = float((turns - nearest) * 1.57079632679489661923);
     switch ((int64_t(nearest) + quadrant_shift) & 3) {
-        case 0: return sin_core(remainder);
-        case 1: return cos_core(remainder);
-        case 2: return -sin_core(remainder);
-        default: return -cos_core(remainder);
+        case 0:
+            return sin_core(remainder);
+        case 1:
+            return cos_core(remainder);
+        case 2:
+            return -sin_core(remainder);
+        default:
+            return -cos_core(remainder);
     }
 }
 
@@ -47,7 +52,8 @@ float portable_exp2(float x) {
     if (x > 126.0f) return 8.5070592e37f;
     float whole = float(int32_t(x < 0.0f ? x - 0.5f : x + 0.5f));
     double f = double(x - whole) * 0.69314718055994530942;
-    double p = 1.0 + f * (1.0 + f * (0.5 + f * (1.0 / 6 + f * (1.0 / 24 + f * (1.0 / 120 + f * (1.0 / 720))))));
+    double p =
+        1.0 + f * (1.0 + f * (0.5 + f * (1.0 / 6 + f * (1.0 / 24 + f * (1.0 / 120 + f * (1.0 / 720))))));
     return float(p) * std::bit_cast<float>(uint32_t(int32_t(whole) + 127) << 23);
 }
 
@@ -63,7 +69,8 @@ float portable_log2(float x) {
     }
     // log((1 + s) / (1 - s)) = 2 (s + s^3/3 + ...), |s| < 0.172
     double s = (double(mantissa) - 1.0) / (double(mantissa) + 1.0), z = s * s;
-    double log_e = 2.0 * s * (1.0 + z * (1.0 / 3 + z * (1.0 / 5 + z * (1.0 / 7 + z * (1.0 / 9 + z * (1.0 / 11))))));
+    double log_e =
+        2.0 * s * (1.0 + z * (1.0 / 3 + z * (1.0 / 5 + z * (1.0 / 7 + z * (1.0 / 9 + z * (1.0 / 11))))));
     return float(double(exponent) + log_e * 1.44269504088896340736);
 }
 

@@ -26,7 +26,8 @@ class HeaderReader {
                 break;
         }
         std::string text;
-        while (at_ < bytes_.size() && !std::isspace(static_cast<unsigned char>(current())) && text.size() < 32)
+        while (at_ < bytes_.size() && !std::isspace(static_cast<unsigned char>(current())) &&
+               text.size() < 32)
             text += char(bytes_[at_++]);
         return text;
     }
@@ -66,12 +67,14 @@ Result<P> read_header(const std::string& path, const MappedFile& file, const cha
                       V P::*values, std::span<const std::byte>& rest) {
     HeaderReader header(file.bytes());
     if (header.word() != magic)
-        return fail(ErrorId::format_unknown, path, "byte 0", "not a picture we read", std::string("expected ") + magic);
+        return fail(ErrorId::format_unknown, path, "byte 0", "not a picture we read",
+                    std::string("expected ") + magic);
     P picture;
     picture.width = header.side();
     picture.height = header.side();
     if (picture.width == 0 || picture.height == 0)
-        return fail(ErrorId::value_out_of_range, path, "header", "bad width or height", "sides from 1 to 16384");
+        return fail(ErrorId::value_out_of_range, path, "header", "bad width or height",
+                    "sides from 1 to 16384");
     header.word();
     rest = header.rest();
     size_t count = size_t(picture.width) * picture.height * 3;

@@ -8,7 +8,8 @@ namespace coppice {
 class Random {
   public:
     // Different streams of one seed are independent.
-    explicit Random(uint64_t seed, uint64_t stream = 0) : key_(mix(seed) ^ mix(stream + 0x632be59bd9b4e019ull)) {}
+    explicit Random(uint64_t seed, uint64_t stream = 0)
+        : key_(mix(seed) ^ mix(stream + 0x632be59bd9b4e019ull)) {}
 
     uint64_t next_bits() { return mix(key_ + 0x9e3779b97f4a7c15ull * ++counter_); }
     // [0, 1): 24 bits.

@@ -23,21 +23,36 @@ std::string to_string(const Error& error) {
 
 const char* name_of(ErrorId id) {
     switch (id) {
-        case ErrorId::file_missing: return "file-missing";
-        case ErrorId::file_unreadable: return "file-unreadable";
-        case ErrorId::file_truncated: return "file-truncated";
-        case ErrorId::file_corrupt: return "file-corrupt";
-        case ErrorId::format_unknown: return "format-unknown";
-        case ErrorId::syntax: return "syntax";
-        case ErrorId::value_out_of_range: return "value-out-of-range";
-        case ErrorId::name_unknown: return "name-unknown";
-        case ErrorId::limit_exceeded: return "limit-exceeded";
-        case ErrorId::usage: return "usage";
-        case ErrorId::write_failed: return "write-failed";
-        case ErrorId::device_missing: return "device-missing";
-        case ErrorId::device_lost: return "device-lost";
-        case ErrorId::regressed: return "regressed";
-        case ErrorId::inconclusive: return "inconclusive";
+        case ErrorId::file_missing:
+            return "file-missing";
+        case ErrorId::file_unreadable:
+            return "file-unreadable";
+        case ErrorId::file_truncated:
+            return "file-truncated";
+        case ErrorId::file_corrupt:
+            return "file-corrupt";
+        case ErrorId::format_unknown:
+            return "format-unknown";
+        case ErrorId::syntax:
+            return "syntax";
+        case ErrorId::value_out_of_range:
+            return "value-out-of-range";
+        case ErrorId::name_unknown:
+            return "name-unknown";
+        case ErrorId::limit_exceeded:
+            return "limit-exceeded";
+        case ErrorId::usage:
+            return "usage";
+        case ErrorId::write_failed:
+            return "write-failed";
+        case ErrorId::device_missing:
+            return "device-missing";
+        case ErrorId::device_lost:
+            return "device-lost";
+        case ErrorId::regressed:
+            return "regressed";
+        case ErrorId::inconclusive:
+            return "inconclusive";
     }
     return "unknown";
 }
@@ -45,11 +60,15 @@ const char* name_of(ErrorId id) {
 int exit_code_of(ErrorId id) {
     switch (id) {
         case ErrorId::device_missing:
-        case ErrorId::device_lost: return 3;
-        case ErrorId::inconclusive: return 4;
+        case ErrorId::device_lost:
+            return 3;
+        case ErrorId::inconclusive:
+            return 4;
         case ErrorId::regressed:
-        case ErrorId::write_failed: return 1;
-        default: return 2;
+        case ErrorId::write_failed:
+            return 1;
+        default:
+            return 2;
     }
 }
 

@@ -39,12 +39,14 @@ using Result = tl::expected<T, Error>;
 using Status = Result<void>;
 
 // fail(...) is what a function returns: `return fail(ErrorId::syntax, path, "line 3", "found ...", "write ...");`
-[[nodiscard]] inline tl::unexpected<Error> fail(ErrorId id, std::string file, std::string place, std::string fault,
-                                                std::string remedy) {
+[[nodiscard]] inline tl::unexpected<Error> fail(ErrorId id, std::string file, std::string place,
+                                                std::string fault, std::string remedy) {
     return tl::unexpected<Error>(
         Error{id, std::move(file), std::move(place), std::move(fault), std::move(remedy)});
 }
-[[nodiscard]] inline tl::unexpected<Error> fail(Error error) { return tl::unexpected<Error>(std::move(error)); }
+[[nodiscard]] inline tl::unexpected<Error> fail(Error error) {
+    return tl::unexpected<Error>(std::move(error));
+}
 
 // "file: place: fault; remedy [id]"; empty pieces are left out. One line.
 std::string to_string(const Error& error);
@@ -59,11 +61,12 @@ int exit_code_of(ErrorId id);
 // Hands an error on, or unwraps: COPPICE_TRY(auto file, MappedFile::open(path));
 #define COPPICE_JOIN_(a, b) a##b
 #define COPPICE_JOIN(a, b) COPPICE_JOIN_(a, b)
-#define COPPICE_TRY_(temporary, declaration, expression)                       \
-    auto temporary = (expression);                                             \
-    if (!temporary) return ::coppice::fail(std::move(temporary.error()));      \
+#define COPPICE_TRY_(temporary, declaration, expression)                  \
+    auto temporary = (expression);                                        \
+    if (!temporary) return ::coppice::fail(std::move(temporary.error())); \
     declaration = std::move(*temporary)
-#define COPPICE_TRY(declaration, ...) COPPICE_TRY_(COPPICE_JOIN(result_, __LINE__), declaration, (__VA_ARGS__))
-#define COPPICE_CHECK(...)                                                                             \
-    if (auto COPPICE_JOIN(status_, __LINE__) = (__VA_ARGS__); !COPPICE_JOIN(status_, __LINE__))        \
-        return ::coppice::fail(std::move(COPPICE_JOIN(status_, __LINE__).error()))
+#define COPPICE_TRY(declaration, ...) \
+    COPPICE_TRY_(COPPICE_JOIN(result_, __LINE__), declaration, (__VA_ARGS__))
+#define COPPICE_CHECK(...)                                                                      \
+    if (auto COPPICE_JOIN(status_, __LINE__) = (__VA_ARGS__); !COPPICE_JOIN(status_, __LINE__)) \
+    return ::coppice::fail(std::move(COPPICE_JOIN(status_, __LINE__).error()))

@@ -1,11 +1,12 @@
-// Visits all entities that have certain components, chunk by chunk. The terms say what is read and what is
-// written:
+// Visits all entities that have certain components, chunk by chunk. The terms say what is read and what is written:
 //
 //     world.query<const Velocity, Position>().each([](const Velocity& v, Position& p) { ... });
 //
-//   const T       must have T, reads it            With<T>         must have T, does not look at it (also for
-//   tags) T             must have T, writes it           Without<T>      must not have T Owner<const T>  the
-//   chunk's owner must be alive and have T: reads that one value for the whole chunk, so that a
+//   const T         must have T, reads it
+//   T               must have T, writes it
+//   With<T>         must have T, does not look at it (also for tags)
+//   Without<T>      must not have T
+//   Owner<const T>  the chunk's owner must be alive and have T: reads that one value for the whole chunk, so that a
 //                   culled tile's entities are skipped without touching one of them
 //
 // Callbacks take the values in the order of the terms; With and Without give none.

@@ -45,10 +45,12 @@ TEST(Frustum, NothingInThePictureIsCulled) {
         ++seen;
         float radius = random.next_in(0.0f, 20.0f);
         vec3 offset = normalize_or(vec3(random.next_in(-1, 1), random.next_in(-1, 1), random.next_in(-1, 1)),
-                                   vec3(1, 0, 0)) * (radius * 0.999f);
+                                   vec3(1, 0, 0)) *
+                      (radius * 0.999f);
         EXPECT_TRUE(sees_sphere(f, p + offset, radius + 1e-3f));
         Box box;
-        box.include(p + vec3(random.next_in(-9, 0), random.next_in(-9, 0), random.next_in(-9, 0)) - vec3(1e-3f));
+        box.include(p + vec3(random.next_in(-9, 0), random.next_in(-9, 0), random.next_in(-9, 0)) -
+                    vec3(1e-3f));
         box.include(p + vec3(random.next_in(0, 9), random.next_in(0, 9), random.next_in(0, 9)) + vec3(1e-3f));
         EXPECT_NE(see_box(f, box), Visibility::outside);
         if (see_box(f, box) == Visibility::inside) {

@@ -57,7 +57,8 @@ class RasterTest : public ::testing::Test {
         ASSERT_TRUE(ring_.submit());
         ASSERT_TRUE(ring_.wait(frame->serial));
         words_.resize(size_t(rasteriser_->width()) * rasteriser_->height());
-        ASSERT_TRUE(gpu::read_now(*device_, rasteriser_->visibility(), 0, std::as_writable_bytes(std::span(words_))));
+        ASSERT_TRUE(
+            gpu::read_now(*device_, rasteriser_->visibility(), 0, std::as_writable_bytes(std::span(words_))));
     }
     uint64_t word(uint32_t x, uint32_t y) const { return words_[size_t(y) * k_side + x]; }
     float depth(uint32_t x, uint32_t y) const { return std::bit_cast<float>(uint32_t(word(x, y) >> 32)); }

@@ -27,7 +27,8 @@ TEST_F(RasterTest, SplatsCoverTheirAreaInTheMean) {
             // Far enough apart that no two overlap.
             for (float y = 8.0f; y < 248.0f; y += 12.0f)
                 for (float x = 8.0f; x < 248.0f; x += 12.0f) {
-                    points.push_back(at(x + random.next_unit(), y + random.next_unit(), random.next_in(1.0f, 300.0f)));
+                    points.push_back(
+                        at(x + random.next_unit(), y + random.next_unit(), random.next_in(1.0f, 300.0f)));
                     expected += side * side;
                 }
             ASSERT_EQ(points.size(), 400u);
@@ -68,7 +69,8 @@ TEST_F(RasterTest, LinesCoverLengthTimesWidthInTheMean) {
             std::vector<PackedVertex> ends;
             for (float y = 10.0f; y < 240.0f; y += 18.0f)
                 for (float x = 10.0f; x < 240.0f; x += 18.0f) {
-                    float angle = random.next_in(0.0f, 6.283f), cx = x + random.next_unit(), cy = y + random.next_unit();
+                    float angle = random.next_in(0.0f, 6.283f), cx = x + random.next_unit(),
+                          cy = y + random.next_unit();
                     float dx = 0.5f * length * portable_cos(angle), dy = 0.5f * length * portable_sin(angle);
                     ends.push_back(at(cx - dx, cy - dy, 20.0f));
                     ends.push_back(at(cx + dx, cy + dy, 20.0f, k_width_one));
@@ -134,10 +136,12 @@ TEST_F(RasterTest, SmallTrianglesCoverTheirAreaInTheMean) {
         double expected = 0.0;
         for (float y = 12.0f; y < 240.0f; y += 12.0f)
             for (float x = 12.0f; x < 240.0f; x += 12.0f) {
-                float angle = random.next_in(0.0f, 6.283f), cx = x + random.next_unit(), cy = y + random.next_unit();
+                float angle = random.next_in(0.0f, 6.283f), cx = x + random.next_unit(),
+                      cy = y + random.next_unit();
                 for (int v = 0; v < 3; ++v) {
                     float a = angle + 2.0943951f * float(v);
-                    vertices.push_back(at(cx + side * 0.57735f * portable_cos(a), cy + side * 0.57735f * portable_sin(a), 9.0f));
+                    vertices.push_back(at(cx + side * 0.57735f * portable_cos(a),
+                                          cy + side * 0.57735f * portable_sin(a), 9.0f));
                 }
                 expected += 0.4330127 * side * side;
             }
@@ -151,7 +155,7 @@ TEST_F(RasterTest, SmallTrianglesCoverTheirAreaInTheMean) {
 // A ground plane that runs under the viewer: everything under the horizon is covered, right up to the lower border.
 TEST_F(RasterTest, TrianglesAreCutAtTheNearPlane) {
     float y = -1.5f, far = 10000.0f;
-    std::vector<PackedVertex> vertices = {{-far, y, far, 1u}, {far, y, far, 1u},  {-far, y, -far, 1u},
+    std::vector<PackedVertex> vertices = {{-far, y, far, 1u}, {far, y, far, 1u},   {-far, y, -far, 1u},
                                           {far, y, -far, 1u}, {-far, y, -far, 1u}, {far, y, far, 1u}};
     PartChoice choice;
     choice.triangles = 2;
@@ -167,7 +171,8 @@ TEST_F(RasterTest, TheNearestSurfaceWinsInAnyOrder) {
     Random random(9);
     std::vector<PackedVertex> points;
     for (int i = 0; i < 20000; ++i)
-        points.push_back(at(random.next_in(0, 64), random.next_in(0, 64), random.next_in(1, 100), uint32_t(i)));
+        points.push_back(
+            at(random.next_in(0, 64), random.next_in(0, 64), random.next_in(1, 100), uint32_t(i)));
     PartChoice choice;
     choice.points = uint32_t(points.size());
     choice.splat_px = 1.3f;
@@ -185,7 +190,8 @@ TEST_F(RasterTest, EverythingBehindOrBesideLeavesThePictureEmpty) {
     for (int i = 0; i < 300; ++i)
         vertices.push_back({random.next_in(-9, 9), random.next_in(-9, 9), random.next_in(0.0f, 9.0f), 1u});
     for (int i = 0; i < 300; ++i)
-        vertices.push_back({random.next_in(20, 29), random.next_in(-9, 9), random.next_in(-15.0f, 0.0f), k_width_one});
+        vertices.push_back(
+            {random.next_in(20, 29), random.next_in(-9, 9), random.next_in(-15.0f, 0.0f), k_width_one});
     PartChoice choice;
     choice.triangles = 200;
     choice.points = 600;

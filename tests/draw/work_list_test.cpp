@@ -56,7 +56,8 @@ TEST(WorkList, KindsFollowSizeAndBlend) {
     std::vector<WorkInstance> instances(1);
     std::vector<WorkEntry> entries(10);
     WorkList::Layout layout = work.gather(instances, entries);
-    for (WorkKind kind : {WorkKind::points_1, WorkKind::points_2, WorkKind::points_any, WorkKind::points_blend})
+    for (WorkKind kind :
+         {WorkKind::points_1, WorkKind::points_2, WorkKind::points_any, WorkKind::points_blend})
         EXPECT_EQ(layout.groups[size_t(kind)].entry_count, 1u);
     EXPECT_EQ(part.points, 400u);
 }

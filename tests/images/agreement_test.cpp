@@ -40,7 +40,8 @@ Means mean_over_directions(PlantPicture& picture, float height_px, const FrameSe
         float yaw = 2.0f * k_pi * 0.618034f * float(i);
         float pitch = -0.35f * float(i % 4);  // from the side to 60 degrees above
         for (int shift = 0; shift < k_shifts; ++shift) {
-            auto mean = picture.draw(height_px, yaw, pitch, {random.next_unit(), random.next_unit()}, settings);
+            auto mean =
+                picture.draw(height_px, yaw, pitch, {random.next_unit(), random.next_unit()}, settings);
             EXPECT_TRUE(mean) << to_string(mean.error());
             if (!mean) return means;
             means.coverage_px += mean->coverage_px;
@@ -63,7 +64,8 @@ TEST_P(Agreement, LevelsOfDetailCoverWhatThePlantCovers) {
     ASSERT_TRUE(description) << to_string(description.error());
     auto bytes = cook_plant(*description, {});
     ASSERT_TRUE(bytes) << to_string(bytes.error());
-    auto plant = load_plant_from_memory(std::make_shared<std::vector<std::byte>>(std::move(*bytes)), GetParam());
+    auto plant =
+        load_plant_from_memory(std::make_shared<std::vector<std::byte>>(std::move(*bytes)), GetParam());
     ASSERT_TRUE(plant) << to_string(plant.error());
     auto picture = PlantPicture::create(*shared_device(), std::move(*plant), 512);
     ASSERT_TRUE(picture) << to_string(picture.error());
@@ -75,11 +77,15 @@ TEST_P(Agreement, LevelsOfDetailCoverWhatThePlantCovers) {
         Means drawn = mean_over_directions(**picture, height_px, lod);
         double coverage = drawn.coverage_px / reference.coverage_px - 1.0;
         double brightness = (reference.color[0] + reference.color[1] + reference.color[2]) / 3.0, color = 0.0;
-        for (int c = 0; c < 3; ++c) color = std::max(color, std::fabs(drawn.color[c] - reference.color[c]) / brightness);
-        std::printf("%-12s %3.0f px: coverage %+6.2f %%, colour %5.2f %%, triangles %llu of %llu, lines %llu, points %llu\n",
-                    GetParam(), height_px, 100.0 * coverage, 100.0 * color,
-                    static_cast<unsigned long long>(drawn.triangles), static_cast<unsigned long long>(reference.triangles),
-                    static_cast<unsigned long long>(drawn.lines), static_cast<unsigned long long>(drawn.points));
+        for (int c = 0; c < 3; ++c)
+            color = std::max(color, std::fabs(drawn.color[c] - reference.color[c]) / brightness);
+        std::printf(
+            "%-12s %3.0f px: coverage %+6.2f %%, colour %5.2f %%, triangles %llu of %llu, lines %llu, points "
+            "%llu\n",
+            GetParam(), height_px, 100.0 * coverage, 100.0 * color,
+            static_cast<unsigned long long>(drawn.triangles),
+            static_cast<unsigned long long>(reference.triangles),
+            static_cast<unsigned long long>(drawn.lines), static_cast<unsigned long long>(drawn.points));
         EXPECT_LE(std::fabs(coverage), k_bound) << height_px;
         EXPECT_LE(color, k_bound) << height_px;
         EXPECT_GT(reference.coverage_px, 100.0);
@@ -91,15 +97,16 @@ TEST_P(Agreement, LevelsOfDetailCoverWhatThePlantCovers) {
     Means drawn_coarse = mean_over_directions(**picture, 150.0f, coarse);
     EXPECT_NEAR(drawn_coarse.coverage_px / full_coarse.coverage_px, 1.0, k_bound);
     // Else a level of detail that never leaves out a triangle would agree best.
-    Means full_far = mean_over_directions(**picture, 20.0f, full), far = mean_over_directions(**picture, 20.0f, lod);
+    Means full_far = mean_over_directions(**picture, 20.0f, full),
+          far = mean_over_directions(**picture, 20.0f, lod);
     EXPECT_LT(far.triangles, full_far.triangles / 5);
     EXPECT_GT(far.points + far.lines, 0u);
     EXPECT_EQ(shared_device()->validation_messages(), 0u);
 }
 
 INSTANTIATE_TEST_SUITE_P(Species, Agreement,
-                         ::testing::Values("pine", "birch", "oak", "stand_tree", "palm", "shrub", "grass", "fern", "daisy",
-                                           "sunflower"),
+                         ::testing::Values("pine", "birch", "oak", "stand_tree", "palm", "shrub", "grass",
+                                           "fern", "daisy", "sunflower"),
                          [](const auto& info) { return std::string(info.param); });
 
 }  // namespace

@@ -17,7 +17,8 @@ struct PictureMean {
 
 class PlantPicture {
   public:
-    static Result<std::unique_ptr<PlantPicture>> create(const gpu::Device& device, Plant plant, uint32_t side) {
+    static Result<std::unique_ptr<PlantPicture>> create(const gpu::Device& device, Plant plant,
+                                                        uint32_t side) {
         std::unique_ptr<PlantPicture> picture(new PlantPicture(device, side));
         COPPICE_TRY(picture->rasteriser_, Rasteriser::create(device, picture->graph_, 1, side, side));
         COPPICE_TRY(picture->ring_, gpu::CommandRing::create(device, 1));
@@ -25,7 +26,8 @@ class PlantPicture {
         scene.models.resize(1);
         std::vector<Plant> plants{std::move(plant)};
         COPPICE_TRY(picture->geometry_, gather_geometry(scene, plants));
-        COPPICE_CHECK(picture->rasteriser_->set_geometry({picture->geometry_.vertices, picture->geometry_.owners}));
+        COPPICE_CHECK(
+            picture->rasteriser_->set_geometry({picture->geometry_.vertices, picture->geometry_.owners}));
         picture->plant_ = plants[0];
         return picture;
     }
@@ -44,14 +46,15 @@ class PlantPicture {
         float height_m = plant_.bounds_plant.size().y;
         float distance_m = frustum.focal_px * height_m / height_px;
         float to_m = distance_m / frustum.focal_px;
-        vec3 center = frustum.forward * distance_m + frustum.right * (shift_px.x * to_m) + frustum.up * (shift_px.y * to_m);
+        vec3 center = frustum.forward * distance_m + frustum.right * (shift_px.x * to_m) +
+                      frustum.up * (shift_px.y * to_m);
         vec3 foot = center - model.center_plant;
         PlantPosition position{foot.x, foot.y, foot.z, 1.0f};
         PlantTurn turn{0, 0, 0, 32767};
         PlantModel plant_model{0, seed_ = mix_seed(seed_)};
         work_.begin(1);
-        counts_ = expand_plants({vec3(0.0f), true, {&position, 1}, {&turn, 1}, {&plant_model, 1}}, geometry_, frustum,
-                                settings, work_.part(0));
+        counts_ = expand_plants({vec3(0.0f), true, {&position, 1}, {&turn, 1}, {&plant_model, 1}}, geometry_,
+                                frustum, settings, work_.part(0));
         WorkList::Size size = work_.size();
         if (size.entries > rasteriser_->entries(0).size())
             COPPICE_CHECK(rasteriser_->grow(0, size.instances, size.entries));
@@ -62,7 +65,8 @@ class PlantPicture {
         COPPICE_CHECK(ring_.submit());
         COPPICE_CHECK(ring_.wait(frame.serial));
         words.resize(size_t(side_) * side_);
-        COPPICE_CHECK(gpu::read_now(device_, rasteriser_->visibility(), 0, std::as_writable_bytes(std::span(words))));
+        COPPICE_CHECK(
+            gpu::read_now(device_, rasteriser_->visibility(), 0, std::as_writable_bytes(std::span(words))));
         PictureMean mean;
         double sum[3] = {};
         for (uint64_t word : words) {

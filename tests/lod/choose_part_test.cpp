@@ -40,7 +40,8 @@ TEST(ChoosePoints, DrawsAsManyVerticesAsAskedFor) {
     PackedPart part = leaf_part(1000);
     FrameSettings settings;
     for (float p = 1.0f; p < 4000.0f; p *= 1.03f) {
-        PartChoice choice = choose_points(part, p, settings, 0.5f);  // d' = 1, c_p = 1: p points for p square pixels
+        PartChoice choice =
+            choose_points(part, p, settings, 0.5f);  // d' = 1, c_p = 1: p points for p square pixels
         uint32_t drawn_points = choice.points - choice.skipped_points;
         uint32_t vertices = drawn_points + 3 * choice.triangles;
         EXPECT_NEAR(float(vertices), std::min(p, 3000.0f), 2.0f) << p;
@@ -67,7 +68,8 @@ TEST(ChoosePoints, ImportanceAddsSmallerPointsNotCoverage) {
     PackedPart plain = leaf_part(1000), important = leaf_part(1000);
     important.importance = 3.0f;
     FrameSettings settings;
-    PartChoice a = choose_points(plain, 300.0f, settings, 0.0f), b = choose_points(important, 300.0f, settings, 0.0f);
+    PartChoice a = choose_points(plain, 300.0f, settings, 0.0f),
+               b = choose_points(important, 300.0f, settings, 0.0f);
     EXPECT_NEAR(float(b.points), 3.0f * float(a.points), 3.0f);
     EXPECT_NEAR(float(b.points) * b.splat_px * b.splat_px, float(a.points) * a.splat_px * a.splat_px, 3.0f);
 }

@@ -19,7 +19,7 @@ struct Case {
     const char* pass;  // whose time counts; big triangles are added to triangles
     WorkKind kind;
     uint32_t count;
-    float size_px;     // length of a line, side of an equilateral triangle
+    float size_px;       // length of a line, side of an equilateral triangle
     double reach_per_s;  // 0: for information
 };
 
@@ -37,14 +37,16 @@ std::vector<PackedVertex> make_vertices(const Case& test, float focal_px) {
                     random.next_in(-0.5f, 0.5f) * float(k_height) * to_m, -z);
         float turn = random.next_in(0.0f, 2.0f * k_pi);
         auto around = [&](float angle, float radius_px) {
-            return center + vec3(portable_cos(turn + angle), portable_sin(turn + angle), 0.0f) * (radius_px * to_m);
+            return center +
+                   vec3(portable_cos(turn + angle), portable_sin(turn + angle), 0.0f) * (radius_px * to_m);
         };
         if (test.kind == WorkKind::lines) {
             push(around(0.0f, test.size_px * 0.5f));
             push(around(k_pi, test.size_px * 0.5f));
             vertices.back().surface = std::bit_cast<uint32_t>(1.0f);  // its width over the mean
         } else if (test.kind == WorkKind::triangles) {
-            for (int v = 0; v < 3; ++v) push(around(float(v) * 2.0f * k_pi / 3.0f, test.size_px * 0.57735027f));
+            for (int v = 0; v < 3; ++v)
+                push(around(float(v) * 2.0f * k_pi / 3.0f, test.size_px * 0.57735027f));
         } else {
             push(center);
         }
@@ -59,8 +61,9 @@ void add_entries(const Case& test, WorkPart& work) {
     PartChoice choice;
     choice.splat_px = choice.line_width_px = 1.0f;
     if (test.kind == WorkKind::points_2) choice.splat_px = 1.4f;
-    (test.kind == WorkKind::lines ? choice.lines : test.kind == WorkKind::triangles ? choice.triangles : choice.points) =
-        test.count;
+    (test.kind == WorkKind::lines       ? choice.lines
+     : test.kind == WorkKind::triangles ? choice.triangles
+                                        : choice.points) = test.count;
     work.add({}, choice, index);
 }
 
@@ -79,7 +82,8 @@ Result<nlohmann::json> bench_raster(const std::string& device_choice) {
     COPPICE_TRY(auto rasteriser, Rasteriser::create(*device, graph, 1, k_width, k_height));
     COPPICE_TRY(gpu::CommandRing ring, gpu::CommandRing::create(*device, 1));
 
-    const float triangle_05 = 1.0745699f, triangle_4 = 3.0393427f, triangle_16 = 6.0786854f, triangle_65 = 12.2519f,
+    const float triangle_05 = 1.0745699f, triangle_4 = 3.0393427f, triangle_16 = 6.0786854f,
+                triangle_65 = 12.2519f,
                 triangle_900 = 45.590141f;  // sides in px
     const Case cases[] = {
         {"points of 1 px", "points 1 px", WorkKind::points_1, 1'000'000, 1.0f, 70.0e6},
@@ -115,7 +119,8 @@ Result<nlohmann::json> bench_raster(const std::string& device_choice) {
             double ms = 0.0;
             for (const auto& section : recording.timestamps->sections()) {
                 std::string_view name = section.name;
-                if (name == test.pass || (test.kind == WorkKind::triangles && name == "big triangles")) ms += section.ms;
+                if (name == test.pass || (test.kind == WorkKind::triangles && name == "big triangles"))
+                    ms += section.ms;
                 if (name == "clear") clear_ms.push_back(section.ms);
                 if (name == "resolve") resolve_ms.push_back(section.ms);
             }
@@ -129,12 +134,8 @@ Result<nlohmann::json> bench_raster(const std::string& device_choice) {
     }
     figures.push_back(to_json(Figure{"clear", median(clear_ms), "ms", {}}));
     figures.push_back(to_json(Figure{"resolve", median(resolve_ms), "ms", {}}));
-    return nlohmann::json{{"name", "raster"},
-                          {"device", device->name},
-                          {"width", k_width},
-                          {"height", k_height},
-                          {"frames", k_frames},
-                          {"figures", figures}};
+    return nlohmann::json{{"name", "raster"},   {"device", device->name}, {"width", k_width},
+                          {"height", k_height}, {"frames", k_frames},     {"figures", figures}};
 }
 
 }  // namespace coppice

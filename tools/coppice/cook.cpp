@@ -8,7 +8,7 @@
 #include "plugins/vegetation/cook/inspect.h"
 #include "runtime/plugin/registry.h"
 #include "tools/coppice/command.h"
-#include "tools/coppice/play_host.h"
+#include "tools/coppice/stopwatch.h"
 
 namespace coppice {
 namespace {

@@ -128,7 +128,7 @@ Result<std::string> cooked_path(const std::string& cache_dir, const std::string&
     uint64_t key = hash_bytes(source.bytes().data(), source.bytes().size(), hash_settings(settings));
     if (kind_of(source_path) == SourceKind::species) {
         key = hash_combine(key, variation);
-        key = hash_combine(key, k_modeller_version);
+        key = hash_combine(key, k_growth_version);
     } else {
         key = hash_combine(key, hash_references(source_path, source.bytes()));
     }

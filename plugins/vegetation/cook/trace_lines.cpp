@@ -203,7 +203,8 @@ TracedLines trace_lines(const PartDescription& part, const TracedSkeleton& skele
             double skeleton_length = 0.0, radius_length = 0.0;
             for (;;) {
                 float length = length_of(segments[at]);
-                float shared = std::min(before + length, cuts[piece + 1].along_m) - std::max(before, cuts[piece].along_m);
+                float shared = std::min(before + length, cuts[piece + 1].along_m) -
+                               std::max(before, cuts[piece].along_m);
                 float radius = 0.5f * (segments[at].begin_radius_m + segments[at].end_radius_m);
                 radius_length += double(std::max(shared, 0.0f)) * double(radius);
                 sum.area += around[at].area;

@@ -11,7 +11,8 @@ struct TracedLine {
     vec3 color_linear;  // mean of the surface around it
     vec3 normal_plant;  // unit: of the surface around it where that faces one way (a blade); zero where it
                         // goes round
-    float width_share;  // its own width over the part's mean, A / l: tapered stems and blades keep their taper
+    float
+        width_share;  // its own width over the part's mean, A / l: tapered stems and blades keep their taper
 };
 
 struct TracedLines {

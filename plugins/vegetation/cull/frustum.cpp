@@ -29,7 +29,8 @@ Visibility see_box(const Frustum& frustum, const Box& box) {
     bool inside = true;
     auto outside_of = [&](vec3 normal, float offset) {
         float distance = glm::dot(normal, center) - offset;
-        float reach = std::fabs(normal.x) * half.x + std::fabs(normal.y) * half.y + std::fabs(normal.z) * half.z;
+        float reach =
+            std::fabs(normal.x) * half.x + std::fabs(normal.y) * half.y + std::fabs(normal.z) * half.z;
         inside = inside && distance >= reach;
         return distance < -reach;
     };

@@ -6,10 +6,10 @@
 namespace coppice {
 
 struct Frustum {
-    vec3 right, up, forward;       // the camera's axes, unit
-    vec3 side_normals[4];          // left, right, bottom, top; unit, pointing inside; all planes contain the origin
+    vec3 right, up, forward;  // the camera's axes, unit
+    vec3 side_normals[4];  // left, right, bottom, top; unit, pointing inside; all planes contain the origin
     float near_m;
-    float focal_px;                // image height / (2 tan(fov / 2))
+    float focal_px;  // image height / (2 tan(fov / 2))
 };
 
 Frustum make_frustum(const Camera& camera, uint32_t width_px, uint32_t height_px);

@@ -42,15 +42,16 @@ ExpandCounts expand_plants(const PlantRun& run, const SceneGeometry& geometry, c
             float chance = float(mix_bits(run.models[i].seed + p * 0x9e3779b9u) >> 8) * 0x1p-24f;
             PartChoice choice = choose_part(geometry.parts[part], view, settings, chance);
             if ((choice.triangles | choice.points | choice.lines) == 0) continue;
-            if (instance == UINT32_MAX) instance = work.add_instance(instance_of(rotation, place.scale, position));
+            if (instance == UINT32_MAX)
+                instance = work.add_instance(instance_of(rotation, place.scale, position));
             work.add(geometry.part_geometry[part], choice, instance);
         }
     }
     return counts;
 }
 
-uint64_t expand_terrain(const Terrain& terrain, uint32_t first_vertex, dvec3 camera_world, const Frustum& frustum,
-                        const FrameSettings& settings, WorkPart& work) {
+uint64_t expand_terrain(const Terrain& terrain, uint32_t first_vertex, dvec3 camera_world,
+                        const Frustum& frustum, const FrameSettings& settings, WorkPart& work) {
     const float error_px = settings.level_of_detail ? 1.0f : 0.0f;
     vec3 origin = vec3(terrain.origin_world() - camera_world);
     uint32_t instance = work.add_instance(instance_of(mat3(1.0f), 1.0f, origin));
@@ -58,11 +59,13 @@ uint64_t expand_terrain(const Terrain& terrain, uint32_t first_vertex, dvec3 cam
     for (const TerrainPatch& patch : terrain.patches()) {
         Box bounds{patch.bounds_local.min + origin, patch.bounds_local.max + origin};
         if (patch.level_count == 0 || see_box(frustum, bounds) == Visibility::outside) continue;
-        float distance_m = std::max(glm::length(glm::clamp(vec3(0.0f), bounds.min, bounds.max)), frustum.near_m);
+        float distance_m =
+            std::max(glm::length(glm::clamp(vec3(0.0f), bounds.min, bounds.max)), frustum.near_m);
         auto levels = terrain.levels().subspan(patch.first_level, patch.level_count);
         size_t level = levels.size() - 1;
         while (level > 0 && levels[level].error_m * frustum.focal_px > error_px * distance_m) --level;
-        work.add_triangles(first_vertex + levels[level].first_vertex, levels[level].vertex_count / 3, instance, false);
+        work.add_triangles(first_vertex + levels[level].first_vertex, levels[level].vertex_count / 3,
+                           instance, false);
         triangles += levels[level].vertex_count / 3;
     }
     return triangles;

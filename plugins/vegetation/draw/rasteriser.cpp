@@ -28,7 +28,8 @@ gpu::BufferSettings device_buffer(VkDeviceSize size_bytes, const char* name) {
     return settings;
 }
 
-gpu::BufferSettings texel_buffer(VkDeviceSize size_bytes, VkFormat format, gpu::MemoryUse memory, const char* name) {
+gpu::BufferSettings texel_buffer(VkDeviceSize size_bytes, VkFormat format, gpu::MemoryUse memory,
+                                 const char* name) {
     gpu::BufferSettings settings = device_buffer(std::max<VkDeviceSize>(size_bytes, 16), name);
     settings.usage |= VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT;
     settings.texel_format = format;
@@ -39,7 +40,8 @@ gpu::BufferSettings texel_buffer(VkDeviceSize size_bytes, VkFormat format, gpu::
 }  // namespace
 
 Result<std::unique_ptr<Rasteriser>> Rasteriser::create(const gpu::Device& device, FrameGraph& graph,
-                                                       uint32_t frame_slots, uint32_t width, uint32_t height) {
+                                                       uint32_t frame_slots, uint32_t width,
+                                                       uint32_t height) {
     std::unique_ptr<Rasteriser> rasteriser(new Rasteriser(device, graph));
     rasteriser->slots_.resize(std::max(frame_slots, 1u));
     COPPICE_CHECK(rasteriser->make_pipelines());
@@ -67,7 +69,8 @@ Status Rasteriser::make_big_triangles(uint32_t limit) {
     uint32_t count = uint32_t(std::min<uint64_t>(limit, room));
     if (count == big_limit_) return {};
     vkDeviceWaitIdle(device_.handle);
-    COPPICE_TRY(big_triangles_, gpu::Buffer::create(device_, device_buffer(16 + 8ull * count, "big triangles")));
+    COPPICE_TRY(big_triangles_,
+                gpu::Buffer::create(device_, device_buffer(16 + 8ull * count, "big triangles")));
     big_limit_ = count;
     return {};
 }
@@ -76,7 +79,8 @@ void Rasteriser::read_big_count(uint32_t slot) {
     uint32_t count = slots_[slot].big_count.mapped_as<uint32_t>()[0];
     dropped_triangles_ = count > big_limit_ ? count - big_limit_ : 0;
     if (dropped_triangles_ == 0) return;
-    if (auto grown = make_big_triangles(count + count / 2); !grown) log_warning("{}", to_string(grown.error()));
+    if (auto grown = make_big_triangles(count + count / 2); !grown)
+        log_warning("{}", to_string(grown.error()));
 }
 
 Status Rasteriser::make_pipelines() {
@@ -85,11 +89,14 @@ Status Rasteriser::make_pipelines() {
                                                BindingKind::texel, BindingKind::texel};
     static constexpr BindingKind k_lines[] = {BindingKind::storage, BindingKind::texel, BindingKind::texel,
                                               BindingKind::texel};
-    static constexpr BindingKind k_triangles[] = {BindingKind::storage, BindingKind::texel, BindingKind::texel,
-                                                  BindingKind::texel, BindingKind::storage};
-    static constexpr BindingKind k_resolve[] = {BindingKind::storage, BindingKind::storage, BindingKind::storage};
-    auto make = [this](const char* name, std::span<const uint32_t> spirv, std::span<const BindingKind> bindings,
-                       uint32_t constant_bytes, std::initializer_list<uint32_t> specialization) {
+    static constexpr BindingKind k_triangles[] = {BindingKind::storage, BindingKind::texel,
+                                                  BindingKind::texel, BindingKind::texel,
+                                                  BindingKind::storage};
+    static constexpr BindingKind k_resolve[] = {BindingKind::storage, BindingKind::storage,
+                                                BindingKind::storage};
+    auto make = [this](const char* name, std::span<const uint32_t> spirv,
+                       std::span<const BindingKind> bindings, uint32_t constant_bytes,
+                       std::initializer_list<uint32_t> specialization) {
         std::vector<uint32_t> values(specialization);
         return gpu::Pipeline::create(device_, {name, spirv, bindings, constant_bytes, values});
     };
@@ -97,8 +104,9 @@ Status Rasteriser::make_pipelines() {
     for (uint32_t small = 0; small < 2; ++small) {
         auto& pipelines = small ? lane_pipelines_ : group_pipelines_;
         auto points = [&](WorkKind kind, const char* name, uint32_t side_limit, uint32_t blend) -> Status {
-            COPPICE_TRY(pipelines[size_t(kind)], make(name, k_splat_points_spirv, k_points, sizeof(RasterConstants),
-                                                      {lanes, small, side_limit, blend}));
+            COPPICE_TRY(pipelines[size_t(kind)],
+                        make(name, k_splat_points_spirv, k_points, sizeof(RasterConstants),
+                             {lanes, small, side_limit, blend}));
             return {};
         };
         COPPICE_CHECK(points(WorkKind::points_1, "points, one pixel", 1, 0));
@@ -107,8 +115,9 @@ Status Rasteriser::make_pipelines() {
         COPPICE_CHECK(points(WorkKind::points_blend, "points, blended", 0, 1));
         COPPICE_TRY(pipelines[size_t(WorkKind::lines)],
                     make("lines", k_raster_lines_spirv, k_lines, sizeof(RasterConstants), {lanes, small}));
-        COPPICE_TRY(pipelines[size_t(WorkKind::triangles)], make("triangles", k_raster_triangles_spirv, k_triangles,
-                                                                 sizeof(RasterConstants), {lanes, small}));
+        COPPICE_TRY(pipelines[size_t(WorkKind::triangles)],
+                    make("triangles", k_raster_triangles_spirv, k_triangles, sizeof(RasterConstants),
+                         {lanes, small}));
     }
     COPPICE_TRY(big_pipeline_, make("big triangles", k_raster_big_triangles_spirv, k_triangles,
                                     sizeof(RasterConstants), {lanes}));
@@ -123,12 +132,15 @@ Status Rasteriser::set_geometry(const GeometryData& data) {
                     std::to_string(data.vertices.size()) + " vertices in one scene",
                     "this device takes " + std::to_string(device_.limits.texel_elements));
     vkDeviceWaitIdle(device_.handle);
-    COPPICE_TRY(gpu::Buffer vertices, gpu::Buffer::create(device_, texel_buffer(data.vertices.size_bytes(),
-                                                                     VK_FORMAT_R32G32B32A32_UINT,
-                                                                     gpu::MemoryUse::device, "vertices")));
-    COPPICE_TRY(gpu::Buffer owners, gpu::Buffer::create(device_, texel_buffer(data.owners.size_bytes(), VK_FORMAT_R32_UINT,
-                                                                   gpu::MemoryUse::device, "owners")));
-    if (!data.vertices.empty()) COPPICE_CHECK(gpu::upload_now(device_, vertices, 0, std::as_bytes(data.vertices)));
+    COPPICE_TRY(
+        gpu::Buffer vertices,
+        gpu::Buffer::create(device_, texel_buffer(data.vertices.size_bytes(), VK_FORMAT_R32G32B32A32_UINT,
+                                                  gpu::MemoryUse::device, "vertices")));
+    COPPICE_TRY(gpu::Buffer owners,
+                gpu::Buffer::create(device_, texel_buffer(data.owners.size_bytes(), VK_FORMAT_R32_UINT,
+                                                          gpu::MemoryUse::device, "owners")));
+    if (!data.vertices.empty())
+        COPPICE_CHECK(gpu::upload_now(device_, vertices, 0, std::as_bytes(data.vertices)));
     if (!data.owners.empty()) COPPICE_CHECK(gpu::upload_now(device_, owners, 0, std::as_bytes(data.owners)));
     vertices_ = std::move(vertices);
     owners_ = std::move(owners);
@@ -141,10 +153,12 @@ Status Rasteriser::resize(uint32_t width, uint32_t height) {
                     std::to_string(width) + "x" + std::to_string(height), "sides from 1 to 16384");
     uint64_t pixels = uint64_t(width) * height;
     if (pixels * 8 > device_.limits.storage_range_bytes)
-        return fail(ErrorId::limit_exceeded, "", "picture size", std::to_string(width) + "x" + std::to_string(height),
-                    "this device takes " + std::to_string(device_.limits.storage_range_bytes / 8) + " pixels");
+        return fail(
+            ErrorId::limit_exceeded, "", "picture size", std::to_string(width) + "x" + std::to_string(height),
+            "this device takes " + std::to_string(device_.limits.storage_range_bytes / 8) + " pixels");
     vkDeviceWaitIdle(device_.handle);
-    COPPICE_TRY(gpu::Buffer visibility, gpu::Buffer::create(device_, device_buffer(pixels * 8, "visibility")));
+    COPPICE_TRY(gpu::Buffer visibility,
+                gpu::Buffer::create(device_, device_buffer(pixels * 8, "visibility")));
     COPPICE_TRY(gpu::Buffer color, gpu::Buffer::create(device_, device_buffer(pixels * 4, "color")));
     visibility_ = std::move(visibility);
     color_ = std::move(color);
@@ -155,15 +169,17 @@ Status Rasteriser::resize(uint32_t width, uint32_t height) {
 
 Status Rasteriser::grow(uint32_t slot, uint32_t instance_count, uint32_t entry_count) {
     vkDeviceWaitIdle(device_.handle);
-    uint64_t instance_limit = device_.limits.texel_elements / 4, entry_limit = device_.limits.texel_elements / 2;
-    COPPICE_TRY(gpu::Buffer instances,
-                gpu::Buffer::create(device_, texel_buffer(sizeof(WorkInstance) * std::min<uint64_t>(instance_count, instance_limit),
-                                                          VK_FORMAT_R32G32B32A32_SFLOAT, gpu::MemoryUse::upload,
-                                                          "instances")));
+    uint64_t instance_limit = device_.limits.texel_elements / 4,
+             entry_limit = device_.limits.texel_elements / 2;
+    COPPICE_TRY(
+        gpu::Buffer instances,
+        gpu::Buffer::create(
+            device_, texel_buffer(sizeof(WorkInstance) * std::min<uint64_t>(instance_count, instance_limit),
+                                  VK_FORMAT_R32G32B32A32_SFLOAT, gpu::MemoryUse::upload, "instances")));
     COPPICE_TRY(gpu::Buffer entries,
-                gpu::Buffer::create(device_, texel_buffer(sizeof(WorkEntry) * std::min<uint64_t>(entry_count, entry_limit),
-                                                          VK_FORMAT_R32G32B32A32_UINT, gpu::MemoryUse::upload,
-                                                          "entries")));
+                gpu::Buffer::create(
+                    device_, texel_buffer(sizeof(WorkEntry) * std::min<uint64_t>(entry_count, entry_limit),
+                                          VK_FORMAT_R32G32B32A32_UINT, gpu::MemoryUse::upload, "entries")));
     slots_[slot].instances = std::move(instances);
     slots_[slot].entries = std::move(entries);
     return {};
@@ -175,7 +191,8 @@ const gpu::Buffer& Rasteriser::last_binding(WorkKind kind) const {
 
 void Rasteriser::draw(VkCommandBuffer commands, WorkKind kind) {
     const Slot& slot = slots_[slot_];
-    const gpu::Buffer* buffers[] = {&visibility_, &vertices_, &slot.entries, &slot.instances, &last_binding(kind)};
+    const gpu::Buffer* buffers[] = {&visibility_, &vertices_, &slot.entries, &slot.instances,
+                                    &last_binding(kind)};
     std::span<const gpu::Buffer* const> bound(buffers, kind == WorkKind::lines ? 4 : 5);
     auto dispatch = [&](const gpu::Pipeline& pipeline, WorkRange range, uint32_t entries_a_group) {
         if (range.entry_count == 0) return;
@@ -195,39 +212,45 @@ void Rasteriser::add_passes() {
     color_resource_ = graph_.add_buffer("color", &color_);
     big_count_resource_ = graph_.add_buffer("big count", &slots_[0].big_count);
 
-    graph_.add_pass("clear",
-                    {{visibility_resource_, BufferAccess::transfer_write}, {big_resource_, BufferAccess::transfer_write}},
-                    [this](VkCommandBuffer commands) {
-                        vkCmdFillBuffer(commands, visibility_.handle(), 0, VK_WHOLE_SIZE, 0);
-                        vkCmdFillBuffer(commands, big_triangles_.handle(), 0, 16, 0);
-                    });
+    graph_.add_pass(
+        "clear",
+        {{visibility_resource_, BufferAccess::transfer_write}, {big_resource_, BufferAccess::transfer_write}},
+        [this](VkCommandBuffer commands) {
+            vkCmdFillBuffer(commands, visibility_.handle(), 0, VK_WHOLE_SIZE, 0);
+            vkCmdFillBuffer(commands, big_triangles_.handle(), 0, 16, 0);
+        });
     auto add_draw = [this](const char* name, WorkKind kind, std::vector<ResourceUse> uses) {
-        draw_passes_[size_t(kind)] =
-            graph_.add_pass(name, std::move(uses), [this, kind](VkCommandBuffer commands) { draw(commands, kind); });
+        draw_passes_[size_t(kind)] = graph_.add_pass(
+            name, std::move(uses), [this, kind](VkCommandBuffer commands) { draw(commands, kind); });
     };
     add_draw("triangles", WorkKind::triangles,
-             {{visibility_resource_, BufferAccess::compute_atomic}, {big_resource_, BufferAccess::compute_read_write}});
+             {{visibility_resource_, BufferAccess::compute_atomic},
+              {big_resource_, BufferAccess::compute_read_write}});
     big_pass_ = graph_.add_pass(
-        "big triangles", {{visibility_resource_, BufferAccess::compute_atomic}, {big_resource_, BufferAccess::compute_read}},
+        "big triangles",
+        {{visibility_resource_, BufferAccess::compute_atomic}, {big_resource_, BufferAccess::compute_read}},
         [this](VkCommandBuffer commands) {
             const Slot& slot = slots_[slot_];
             const gpu::Buffer* buffers[] = {&visibility_, &vertices_, &slot.entries, &slot.instances,
                                             &big_triangles_};
             big_pipeline_.bind(commands, buffers, &raster_, sizeof raster_);
-            big_pipeline_.dispatch(commands, device_.limits.is_cpu ? 64 : 4096);  // groups stride over the list
+            big_pipeline_.dispatch(commands,
+                                   device_.limits.is_cpu ? 64 : 4096);  // groups stride over the list
         });
     big_count_pass_ = graph_.add_pass(
         "count big triangles",
         {{big_resource_, BufferAccess::transfer_read}, {big_count_resource_, BufferAccess::transfer_write}},
         [this](VkCommandBuffer commands) {
             VkBufferCopy first_word{0, 0, sizeof(uint32_t)};
-            vkCmdCopyBuffer(commands, big_triangles_.handle(), slots_[slot_].big_count.handle(), 1, &first_word);
+            vkCmdCopyBuffer(commands, big_triangles_.handle(), slots_[slot_].big_count.handle(), 1,
+                            &first_word);
         });
     add_draw("lines", WorkKind::lines, {{visibility_resource_, BufferAccess::compute_atomic}});
     add_draw("points 1 px", WorkKind::points_1, {{visibility_resource_, BufferAccess::compute_atomic}});
     add_draw("points 2 px", WorkKind::points_2, {{visibility_resource_, BufferAccess::compute_atomic}});
     add_draw("points large", WorkKind::points_any, {{visibility_resource_, BufferAccess::compute_atomic}});
-    add_draw("points blended", WorkKind::points_blend, {{visibility_resource_, BufferAccess::compute_atomic}});
+    add_draw("points blended", WorkKind::points_blend,
+             {{visibility_resource_, BufferAccess::compute_atomic}});
     graph_.add_pass("resolve",
                     {{visibility_resource_, BufferAccess::compute_read},
                      {color_resource_, BufferAccess::compute_write},
@@ -239,8 +262,8 @@ void Rasteriser::add_passes() {
                     });
 }
 
-void Rasteriser::set_frame(uint32_t slot, const WorkList::Layout& layout, const Camera& camera, const Light& light,
-                           bool show_kinds) {
+void Rasteriser::set_frame(uint32_t slot, const WorkList::Layout& layout, const Camera& camera,
+                           const Light& light, bool show_kinds) {
     slot_ = slot;
     layout_ = layout;
     read_big_count(slot);
@@ -259,12 +282,9 @@ void Rasteriser::set_frame(uint32_t slot, const WorkList::Layout& layout, const 
     resolve_.forward = vec4(frustum.forward, camera.near_m);
 
     vec3 to_sun = normalize_or(light.direction_to_sun, vec3(0.0f));
-    LightBlock block{vec4(to_sun, light.exposure),
-                     vec4(light.sun_color, light.haze_density_per_m),
-                     vec4(light.sky_zenith_color, 0.0f),
-                     vec4(light.sky_horizon_color, 0.0f),
-                     vec4(light.ground_color, 0.0f),
-                     vec4(light.haze_color, 0.0f)};
+    LightBlock block{vec4(to_sun, light.exposure),       vec4(light.sun_color, light.haze_density_per_m),
+                     vec4(light.sky_zenith_color, 0.0f), vec4(light.sky_horizon_color, 0.0f),
+                     vec4(light.ground_color, 0.0f),     vec4(light.haze_color, 0.0f)};
     std::memcpy(slots_[slot].light.mapped(), &block, sizeof block);
 
     for (size_t kind = 0; kind < k_work_kinds; ++kind)
@@ -277,8 +297,8 @@ void Rasteriser::set_frame(uint32_t slot, const WorkList::Layout& layout, const 
 }
 
 uint64_t Rasteriser::gpu_bytes() const {
-    uint64_t total = visibility_.size_bytes() + color_.size_bytes() + vertices_.size_bytes() + owners_.size_bytes() +
-                     big_triangles_.size_bytes();
+    uint64_t total = visibility_.size_bytes() + color_.size_bytes() + vertices_.size_bytes() +
+                     owners_.size_bytes() + big_triangles_.size_bytes();
     for (const Slot& slot : slots_)
         total += slot.instances.size_bytes() + slot.entries.size_bytes() + slot.light.size_bytes();
     return total;

@@ -29,7 +29,9 @@ class Rasteriser {
 
     // One frame: choose the slot, write into its mapped buffers, then say what was written. The passes are recorded
     // when the frame graph is.
-    std::span<WorkInstance> instances(uint32_t slot) { return slots_[slot].instances.mapped_as<WorkInstance>(); }
+    std::span<WorkInstance> instances(uint32_t slot) {
+        return slots_[slot].instances.mapped_as<WorkInstance>();
+    }
     std::span<WorkEntry> entries(uint32_t slot) { return slots_[slot].entries.mapped_as<WorkEntry>(); }
     // Makes room for more; waits for the device. Contents are lost.
     Status grow(uint32_t slot, uint32_t instance_count, uint32_t entry_count);
@@ -56,7 +58,8 @@ class Rasteriser {
     };
     struct Slot {
         gpu::Buffer instances, entries, light;
-        gpu::Buffer big_count;  // how many large triangles the frame had; read when the slot comes round again
+        gpu::Buffer
+            big_count;  // how many large triangles the frame had; read when the slot comes round again
     };
     Rasteriser(const gpu::Device& device, FrameGraph& graph) : device_(device), graph_(graph) {}
     Status make_pipelines();

@@ -35,10 +35,10 @@ Result<SceneGeometry> gather_geometry(const Scene& scene, std::span<const Plant>
         geometry.owners.insert(geometry.owners.end(), plant.point_owners.begin(), plant.point_owners.end());
         for (PackedPart part : plant.parts) {
             part.importance *= i < scene.models.size() ? scene.models[i].importance : 1.0f;
-            geometry.part_geometry.push_back({first_triangle_vertex + part.first_triangle * 3,
-                                              first_point + part.first_point, first_line_vertex + part.first_line * 2,
-                                              first_owner + part.first_point,
-                                              (part.flags & k_part_faces_outwards) != 0});
+            geometry.part_geometry.push_back(
+                {first_triangle_vertex + part.first_triangle * 3, first_point + part.first_point,
+                 first_line_vertex + part.first_line * 2, first_owner + part.first_point,
+                 (part.flags & k_part_faces_outwards) != 0});
             geometry.parts.push_back(part);
             model.triangle_count += part.triangle_count;
         }

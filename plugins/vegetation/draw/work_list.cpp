@@ -45,7 +45,8 @@ void WorkPart::add_triangles(uint32_t first_vertex, uint32_t count, uint32_t ins
 
 void WorkPart::add(const PartGeometry& geometry, const PartChoice& choice, uint32_t instance) {
     add_triangles(geometry.first_triangle_vertex, choice.triangles, instance, geometry.cull_back);
-    add_run(WorkKind::lines, {geometry.first_line_vertex, choice.lines, instance, 0, choice.line_width_px, 0, 0, 0}, 2);
+    add_run(WorkKind::lines,
+            {geometry.first_line_vertex, choice.lines, instance, 0, choice.line_width_px, 0, 0, 0}, 2);
     // A side a rounding error over a whole pixel must not cost four times the pixels.
     constexpr float k_slack = 1.0e-3f;
     float side = choice.splat_px;
@@ -54,7 +55,8 @@ void WorkPart::add(const PartGeometry& geometry, const PartChoice& choice, uint3
                     : side <= 2.0f + k_slack   ? WorkKind::points_2
                                                : WorkKind::points_any;
     add_run(kind,
-            {geometry.first_point, choice.points, instance, geometry.first_owner, side, choice.point_owner_min, 0, 0},
+            {geometry.first_point, choice.points, instance, geometry.first_owner, side,
+             choice.point_owner_min, 0, 0},
             1);
     triangles += choice.triangles;
     lines += choice.lines;

@@ -37,7 +37,7 @@ static_assert(sizeof(WorkInstance) == 64);
 
 inline constexpr uint32_t k_primitives_a_group = 256;  // larger runs are cut, so that groups are alike
 inline constexpr uint32_t k_primitives_a_lane = 32;    // runs up to this long are drawn by a single lane
-inline constexpr size_t k_lane_buckets = 4;            // up to 4, 8, 16, 32 primitives: lanes of a group are alike
+inline constexpr size_t k_lane_buckets = 4;  // up to 4, 8, 16, 32 primitives: lanes of a group are alike
 
 // A part's place in the geometry buffer.
 struct PartGeometry {

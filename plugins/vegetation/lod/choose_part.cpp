@@ -29,14 +29,15 @@ PartChoice choose_points(const PackedPart& part, float projected_area_px2, const
     if (part.triangle_count == 0 || !(projected_area_px2 > 0.0f)) return choice;
     float p = point_count(projected_area_px2, part.importance, settings);
     float stored = float(part.point_count);
-    if (part.point_count == 0 || p >= 1.5f * stored || (!settings.blend && p >= stored)) return all_triangles(part);
+    if (part.point_count == 0 || p >= 1.5f * stored || (!settings.blend && p >= stored))
+        return all_triangles(part);
     choice.splat_px = std::sqrt(settings.splat_factor * projected_area_px2 / std::min(p, stored));
     if (p < stored) {
         choice.points = round_by_chance(p, chance, part.point_count);
     } else {
         choice.points = part.point_count;
-        choice.triangles =
-            round_by_chance((p - stored) / (0.5f * stored) * float(part.triangle_count), chance, part.triangle_count);
+        choice.triangles = round_by_chance((p - stored) / (0.5f * stored) * float(part.triangle_count),
+                                           chance, part.triangle_count);
         choice.point_owner_min = choice.triangles;
         choice.skipped_points =
             uint32_t(uint64_t(part.point_count) * choice.triangles / std::max(part.triangle_count, 1u));
@@ -52,14 +53,16 @@ PartChoice choose_lines(const PackedPart& part, float projected_area_px2, float 
     float line_area_px2 = projected_length_px * d;
     // importance makes more and thinner lines, and keeps triangles for longer
     float q = part.importance * projected_area_px2 / line_area_px2;
-    if (part.line_count == 0 || !(line_area_px2 > 0.0f) || part.line_error_m * pixels_per_meter >= d || !(q <= 1.0f))
+    if (part.line_count == 0 || !(line_area_px2 > 0.0f) || part.line_error_m * pixels_per_meter >= d ||
+        !(q <= 1.0f))
         return all_triangles(part);
     choice.lines = round_by_chance(q * float(part.line_count), chance, part.line_count);
     choice.line_width_px = d / part.importance;
     return choice;
 }
 
-PartChoice choose_part(const PackedPart& part, const PlantView& view, const FrameSettings& settings, float chance) {
+PartChoice choose_part(const PackedPart& part, const PlantView& view, const FrameSettings& settings,
+                       float chance) {
     if (!settings.level_of_detail) return all_triangles(part);
     float area_px2 = projected_area_px2(part, view, settings.projection);
     // The gain was measured at d' = 1. Points of side d' overlap as points of one pixel do in a picture d' times coarser,
@@ -67,7 +70,8 @@ PartChoice choose_part(const PackedPart& part, const PlantView& view, const Fram
     bool measured = settings.projection == ProjectionMode::measured;
     float d = std::max(settings.sample_distance_px, 1.0e-3f);
     if (part.kind == PackedPartKind::points) {
-        if (measured && part.point_count > 0) area_px2 *= gain_at(part, area_px2 / (float(part.point_count) * d * d));
+        if (measured && part.point_count > 0)
+            area_px2 *= gain_at(part, area_px2 / (float(part.point_count) * d * d));
         return choose_points(part, area_px2, settings, chance);
     }
     float length_px = projected_length_px(part, view, settings.projection);

@@ -32,6 +32,7 @@ PartChoice choose_lines(const PackedPart& part, float projected_area_px2, float 
                         float pixels_per_meter, const FrameSettings& settings, float chance);
 
 // The whole decision for one part.
-PartChoice choose_part(const PackedPart& part, const PlantView& view, const FrameSettings& settings, float chance);
+PartChoice choose_part(const PackedPart& part, const PlantView& view, const FrameSettings& settings,
+                       float chance);
 
 }  // namespace coppice

@@ -4,7 +4,8 @@ namespace coppice {
 
 float projected_area_px2(const PackedPart& part, const PlantView& view, ProjectionMode mode) {
     float square = view.pixels_per_meter * view.pixels_per_meter;
-    if (mode == ProjectionMode::measured) return part.projected_area_m2.evaluate(view.direction_plant) * square;
+    if (mode == ProjectionMode::measured)
+        return part.projected_area_m2.evaluate(view.direction_plant) * square;
     return 0.5f * part.area_m2 * square;  // paper Eq. (1): mean |cos| = 1/2
 }
 

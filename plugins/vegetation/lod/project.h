@@ -8,8 +8,9 @@ namespace coppice {
 
 // How a plant stands to the viewer; shared by all its parts.
 struct PlantView {
-    vec3 direction_plant;    // unit, from the viewer to the plant, in plant space
-    float pixels_per_meter;  // on the image at the plant's distance, times its scale: f / r * scale. Finite, >= 0
+    vec3 direction_plant;  // unit, from the viewer to the plant, in plant space
+    float
+        pixels_per_meter;  // on the image at the plant's distance, times its scale: f / r * scale. Finite, >= 0
 };
 
 // pixels_per_meter for a plant of radius_m whose centre is distance_m away. Within two radii r moves from the centre

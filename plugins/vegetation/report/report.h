@@ -14,9 +14,10 @@ struct FrameReport {
     uint64_t scene_triangles = 0;  // of the whole scene
     uint64_t work_entries = 0;     // of the work list
     uint64_t dropped_entries = 0;  // did not fit into the work list; its capacity grows for the next frame
-    uint64_t dropped_triangles = 0;  // large ones beyond the list's capacity in the last finished frame; it grows
+    uint64_t dropped_triangles =
+        0;  // large ones beyond the list's capacity in the last finished frame; it grows
     double cull_ms = 0.0, lod_ms = 0.0, write_ms = 0.0;  // CPU: tiles, levels, work list
-    uint64_t gpu_bytes = 0;              // buffers held
+    uint64_t gpu_bytes = 0;                              // buffers held
 };
 
 }  // namespace coppice

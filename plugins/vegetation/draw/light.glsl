@@ -1,4 +1,4 @@
-// The light model, linear radiance. The same model lights the ray-traced reference.
+// The light model, linear radiance.
 // A leaf shows the side towards the viewer; light that falls on its other side comes through, tinted by it twice.
 // Openness, the share of sky a place sees past its own plant, weighs the sky's light, and the sun's in the mean.
 #ifndef COPPICE_LIGHT_GLSL

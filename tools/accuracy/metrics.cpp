@@ -1,0 +1,3 @@
+#include "tools/accuracy/metrics.h"
+
+namespace coppice {}  // namespace coppice

@@ -245,7 +245,8 @@ uint64_t hash_settings(const CookSettings& settings) {
     uint64_t hash = hash_combine(k_cook_version, uint64_t(settings.sampler));
     hash = hash_combine(hash, uint64_t(settings.order));
     hash = hash_combine(hash, std::bit_cast<uint32_t>(settings.points_per_triangle));
-    return hash_combine(hash, settings.seed);
+    hash = hash_combine(hash, settings.seed);
+    return hash_combine(hash, settings.lines);
 }
 
 Result<std::vector<std::byte>> cook_plant(const PlantDescription& plant, const CookSettings& settings) {
@@ -262,6 +263,7 @@ Result<std::vector<std::byte>> cook_plant(const PlantDescription& plant, const C
         std::string place = fmt::format("parts[{}] \"{}\"", i, plant.parts[i].name);
         COPPICE_TRY(PartDescription mesh, clean_mesh(plant.parts[i], plant.name, place, dropped));
         triangle_count += mesh.indices.size() / 3;
+        if (!settings.lines) mesh.kind = PartKind::points;
         if (!mesh.indices.empty()) meshes.push_back(std::move(mesh));
     }
     if (meshes.empty())

@@ -20,6 +20,7 @@ struct CookSettings {
     PointSampler sampler = PointSampler::automatic;
     PrefixOrder order = PrefixOrder::progressive;
     float points_per_triangle = 2.0f;  // (0, 64]; the paper's 2
+    bool lines = true;                 // false: every part becomes points, whatever its shape or author says
     uint64_t seed = 1;
     // These two say nothing of what comes out, and are not hashed.
     uint32_t primitive_limit =

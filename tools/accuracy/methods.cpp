@@ -1,0 +1,133 @@
+// The methods that draw an author's plants as cooked, and the list of all.
+#include "tools/accuracy/method.h"
+
+#include <optional>
+#include <utility>
+#include "plugins/vegetation/cook/cook_file.h"
+#include "plugins/vegetation/eco/make_tiles.h"
+#include "runtime/core/log.h"
+
+namespace coppice {
+namespace {
+
+constexpr float k_paper_splat_factor = 1.3f;  // Deussen et al. 2002 say 1.2 to 1.5
+
+std::vector<double> sample_distances_px() { return {0.5, 0.71, 1.0, 1.41, 2.0, 2.83, 4.0, 5.66, 8.0}; }
+
+class FullMethod final : public AccuracyMethod {
+  public:
+    explicit FullMethod(uint32_t samples) : samples_(samples) {}
+    std::string name() const override {
+        return samples_ == 1 ? "full, 1 sample" : "full, " + std::to_string(samples_) + " samples";
+    }
+    std::string what() const override {
+        return "Every triangle, " +
+               (samples_ == 1 ? "one sample a pixel." : std::to_string(samples_) + " samples a pixel.");
+    }
+    std::string quality_name() const override { return ""; }
+    std::vector<double> qualities() const override { return {1.0}; }
+    double default_quality() const override { return 1.0; }
+    uint32_t samples_per_pixel() const override { return samples_; }
+    Status prepare(const MethodInput& input) override {
+        original_ = input.original;
+        return {};
+    }
+    Result<DrawnFrame> frame(const Camera&, float, double) override {
+        FrameSettings settings;
+        settings.level_of_detail = false;
+        return DrawnFrame{original_, settings};
+    }
+
+  private:
+    uint32_t samples_;
+    const MethodScene* original_ = nullptr;
+};
+
+// Points, lines and triangles by d'; quality is d'.
+struct Hybrid {
+    const char* name;
+    const char* what;
+    FrameSettings settings;
+    std::optional<CookSettings> cook;  // where the plants are cooked another way
+};
+
+class HybridMethod final : public AccuracyMethod {
+  public:
+    explicit HybridMethod(Hybrid hybrid) : hybrid_(std::move(hybrid)) {}
+    std::string name() const override { return hybrid_.name; }
+    std::string what() const override { return hybrid_.what; }
+    std::string quality_name() const override { return "d' px"; }
+    std::vector<double> qualities() const override { return sample_distances_px(); }
+    double default_quality() const override { return 1.0; }
+
+    Status prepare(const MethodInput& input) override {
+        drawn_ = input.original;
+        if (!hybrid_.cook) return {};
+        const Scene& scene = input.original->scene;
+        std::vector<PlantSource> sources;
+        for (const SceneModel& model : scene.models) {
+            sources.push_back({model.source_path, model.variation});
+            if (model.source_path.ends_with(".plant"))
+                log_warning("{}: packed already, so \"{}\" draws it as it is", model.source_path, name());
+        }
+        COPPICE_TRY(cooked_.plants,
+                    find_or_cook(input.cache_dir, sources, *hybrid_.cook, input.modeller, input.images));
+        cooked_.scene = scene;
+        std::vector<Box> bounds;
+        for (const Plant& plant : cooked_.plants) bounds.push_back(plant.bounds_plant);
+        finish_tiles(cooked_.scene, bounds);
+        drawn_ = &cooked_;
+        return {};
+    }
+
+    Result<DrawnFrame> frame(const Camera&, float, double quality) override {
+        FrameSettings settings = hybrid_.settings;
+        settings.sample_distance_px = float(quality);
+        return DrawnFrame{drawn_, settings};
+    }
+
+  private:
+    Hybrid hybrid_;
+    MethodScene cooked_;
+    const MethodScene* drawn_ = nullptr;
+};
+
+std::vector<Hybrid> hybrids() {
+    FrameSettings isotropic;
+    isotropic.projection = ProjectionMode::isotropic;
+    isotropic.splat_factor = k_paper_splat_factor;
+    FrameSettings printed = isotropic;
+    printed.projection = ProjectionMode::printed;
+    FrameSettings unblended;
+    unblended.blend = false;
+    CookSettings shuffled;
+    shuffled.order = PrefixOrder::shuffled;
+    CookSettings points;
+    points.lines = false;
+    return {
+        {"hybrid, measured", "Points, lines and triangles by measured projections: the program's defaults.",
+         FrameSettings{}, std::nullopt},
+        {"hybrid, isotropic",
+         "The paper's hybrid with pi/4 of the lines' length for any direction, splat factor 1.3.", isotropic,
+         std::nullopt},
+        {"hybrid, printed", "The paper's hybrid, its formulas as printed, splat factor 1.3.", printed,
+         std::nullopt},
+        {"hybrid, unblended", "The defaults, but points give way to triangles at once.", unblended,
+         std::nullopt},
+        {"hybrid, random order", "The defaults, but primitives come in the paper's random order.",
+         FrameSettings{}, shuffled},
+        {"points only", "The defaults, but stems turn into points as leaves do: no lines.", FrameSettings{},
+         points},
+    };
+}
+
+}  // namespace
+
+std::vector<std::unique_ptr<AccuracyMethod>> make_accuracy_methods() {
+    std::vector<std::unique_ptr<AccuracyMethod>> methods;
+    for (uint32_t samples : {1u, 4u}) methods.push_back(std::make_unique<FullMethod>(samples));
+    for (Hybrid& hybrid : hybrids()) methods.push_back(std::make_unique<HybridMethod>(std::move(hybrid)));
+    return methods;
+}
+
+}  // namespace coppice

@@ -49,6 +49,7 @@ struct Camera {
     vec3 forward() const;
     vec3 right() const;
     vec3 up() const;
+    bool operator==(const Camera&) const = default;
 };
 
 // Sun, sky and haze. Radiances are linear, 1 is white on the screen after exposure.
@@ -61,6 +62,7 @@ struct Light {
     vec3 haze_color = vec3(0.62f, 0.72f, 0.84f);
     float haze_density_per_m = 0.0006f;  // 0: none
     float exposure = 1.0f;
+    bool operator==(const Light&) const = default;
 };
 
 }  // namespace coppice

@@ -9,9 +9,11 @@
 
 #include <chrono>
 #include <cmath>
+#include <utility>
 #include "plugins/vegetation/cull/list_tiles.h"
 #include "plugins/vegetation/draw/expand_plants.h"
 #include "plugins/vegetation/draw/rasteriser.h"
+#include "plugins/vegetation/lod/rest.h"
 #include "runtime/core/jobs.h"
 #include "runtime/core/log.h"
 #include "runtime/plugin/plugin.h"
@@ -77,7 +79,10 @@ class VegetationSystems final : public Vegetation {
         return {};
     }
 
-    Status resize(uint32_t width, uint32_t height) override { return rasteriser_->resize(width, height); }
+    Status resize(uint32_t width, uint32_t height) override {
+        moved_ = true;
+        return rasteriser_->resize(width, height);
+    }
     void set_camera(const Camera& camera) override {
         const dvec3& p = camera.position_world;
         // A host's camera that is not a number must not reach a sort or a pixel: the one before stays.
@@ -90,6 +95,7 @@ class VegetationSystems final : public Vegetation {
     void set_slot(uint32_t slot) override { slot_ = slot; }
     const gpu::Buffer& color() const override { return rasteriser_->color(); }
     ResourceIndex color_resource() const override { return rasteriser_->color_resource(); }
+    const gpu::Buffer& radiance() const override { return rasteriser_->radiance(); }
     const gpu::Buffer& visibility() const override { return rasteriser_->visibility(); }
     const FrameReport& report() const override { return report_; }
 
@@ -123,16 +129,42 @@ class VegetationSystems final : public Vegetation {
         geometry_ = {};
         terrain_ = nullptr;
         scene_triangles_ = 0;
+        moved_ = true;
+    }
+
+    // How long nothing has moved, and what follows for this frame.
+    void begin_frame() {
+        const bool rests = !std::exchange(moved_, false) && camera_ == last_camera_ &&
+                           light_ == last_light_ && frame_ == last_frame_;
+        last_camera_ = camera_;
+        last_light_ = light_;
+        last_frame_ = frame_;
+        rested_ = rests && keep_ ? std::min(rested_ + 1, frame_.accumulate_limit) : 0;
+        keep_ = frame_.accumulate_limit > 0;
+        if (keep_)
+            if (auto room = rasteriser_->keep_radiance(); !room) {
+                if (!std::exchange(keep_refused_, true)) log_warning("{}", to_string(room.error()));
+                keep_ = false;
+            }
+        if (!keep_) rested_ = 0;
+        settled_ = keep_ && rested_ >= frame_.accumulate_limit;
+        report_.rested_frames = rested_;
+        resting_ = resting_frame(rested_, frame_);
+        drawn_ = frame_;
+        drawn_.sample_distance_px = resting_.sample_distance_px;
     }
 
     void list_tiles(const TileList::Plants& plants) {
         double begin = now_ms();
+        begin_frame();
+        if (settled_) return;
         frustum_ = make_frustum(camera_, rasteriser_->width(), rasteriser_->height());
         tile_list_.list(plants, frustum_, camera_.position_world);
         report_.cull_ms = now_ms() - begin;
     }
 
     void expand() {
+        if (settled_) return;
         double begin = now_ms();
         size_t run_count = tile_list_.runs().size();
         work_.begin(run_count +
@@ -140,17 +172,18 @@ class VegetationSystems final : public Vegetation {
         run_counts_.assign(run_count, {});
         parallel_for(run_count, 1, [this](size_t first, size_t last) {
             for (size_t i = first; i < last; ++i)
-                run_counts_[i] =
-                    expand_plants(tile_list_.runs()[i], geometry_, frustum_, frame_, work_.part(i + 1));
+                run_counts_[i] = expand_plants(tile_list_.runs()[i], geometry_, frustum_, drawn_,
+                                               resting_.index, work_.part(i + 1));
         });
         report_.terrain_triangles =
             terrain_ ? expand_terrain(*terrain_, geometry_.first_terrain_vertex, camera_.position_world,
-                                      frustum_, frame_, work_.part(0))
+                                      frustum_, drawn_, work_.part(0))
                      : 0;
         report_.lod_ms = now_ms() - begin;
     }
 
     void write_work_list() {
+        if (settled_) return rasteriser_->skip_frame();
         double begin = now_ms();
         WorkList::Size size = work_.size();
         bool fits = size.instances <= rasteriser_->instances(slot_).size() &&
@@ -166,11 +199,13 @@ class VegetationSystems final : public Vegetation {
             }
         }
         layout_ = work_.gather(rasteriser_->instances(slot_), rasteriser_->entries(slot_));
-        rasteriser_->set_frame(slot_, layout_, camera_, light_, frame_.view == RepresentationView::kinds);
+        rasteriser_->set_frame(slot_, layout_, camera_, light_,
+                               {drawn_.view, resting_.shift_px, keep_ ? resting_.new_share : 0.0f});
         report_.write_ms = now_ms() - begin;
     }
 
     void count() {
+        if (settled_) return;
         report_.tiles = tile_list_.tile_count;
         report_.tiles_visible = tile_list_.visible_tile_count;
         report_.plants = tile_list_.plant_count;
@@ -203,6 +238,17 @@ class VegetationSystems final : public Vegetation {
     Light light_;
     FrameSettings frame_;
     uint32_t slot_ = 0;
+
+    // A view at rest (lod/rest.h).
+    Camera last_camera_;
+    Light last_light_;
+    FrameSettings last_frame_;
+    uint32_t rested_ = 0;
+    bool moved_ = true;  // what is drawn changed in another way
+    bool keep_ = false, keep_refused_ = false;
+    bool settled_ = false;  // the picture shows the mean of all frames there will be
+    RestingFrame resting_;
+    FrameSettings drawn_;  // frame_, with the d' of the resting view
 
     Frustum frustum_{};
     TileList tile_list_;

@@ -52,7 +52,7 @@ class RasterTest : public ::testing::Test {
         EXPECT_EQ(layout.dropped_entries, 0u);
         auto frame = ring_.begin();
         ASSERT_TRUE(frame);
-        rasteriser_->set_frame(0, layout, camera_, Light{}, false);
+        rasteriser_->set_frame(0, layout, camera_, Light{}, {});
         graph_.record(frame->commands, frame->timestamps);
         ASSERT_TRUE(ring_.submit());
         ASSERT_TRUE(ring_.wait(frame->serial));

@@ -54,13 +54,13 @@ class PlantPicture {
         PlantModel plant_model{0, seed_ = mix_seed(seed_)};
         work_.begin(1);
         counts_ = expand_plants({vec3(0.0f), true, {&position, 1}, {&turn, 1}, {&plant_model, 1}}, geometry_,
-                                frustum, settings, work_.part(0));
+                                frustum, settings, 0, work_.part(0));
         WorkList::Size size = work_.size();
         if (size.entries > rasteriser_->entries(0).size())
             COPPICE_CHECK(rasteriser_->grow(0, size.instances, size.entries));
         WorkList::Layout layout = work_.gather(rasteriser_->instances(0), rasteriser_->entries(0));
         COPPICE_TRY(auto frame, ring_.begin());
-        rasteriser_->set_frame(0, layout, camera, Light{}, false);
+        rasteriser_->set_frame(0, layout, camera, Light{}, {});
         graph_.record(frame.commands, frame.timestamps);
         COPPICE_CHECK(ring_.submit());
         COPPICE_CHECK(ring_.wait(frame.serial));

@@ -111,7 +111,7 @@ Result<nlohmann::json> bench_raster(const std::string& device_choice) {
         std::vector<double> pass_ms;
         for (int frame = 0; frame < k_warm_frames + k_frames; ++frame) {
             COPPICE_TRY(auto recording, ring.begin());
-            rasteriser->set_frame(0, layout, camera, Light{}, false);
+            rasteriser->set_frame(0, layout, camera, Light{}, {});
             graph.record(recording.commands, recording.timestamps);
             COPPICE_CHECK(ring.submit());
             COPPICE_CHECK(ring.wait(recording.serial));

@@ -18,8 +18,10 @@ WorkInstance instance_of(const mat3& rotation, float scale, vec3 position) {
 }  // namespace
 
 ExpandCounts expand_plants(const PlantRun& run, const SceneGeometry& geometry, const Frustum& frustum,
-                           const FrameSettings& settings, WorkPart& work) {
+                           const FrameSettings& settings, uint32_t rest_index, WorkPart& work) {
     ExpandCounts counts;
+    const float turn =
+        float(uint32_t(rest_index * 2654435769u) >> 8) * 0x1p-24f;  // multiples of the golden section
     for (size_t i = 0; i < run.positions.size(); ++i) {
         const PlantPosition& place = run.positions[i];
         const DrawModel& model = geometry.models[run.models[i].model];
@@ -39,12 +41,13 @@ ExpandCounts expand_plants(const PlantRun& run, const SceneGeometry& geometry, c
         uint32_t instance = UINT32_MAX;
         for (uint32_t p = 0; p < model.part_count; ++p) {
             uint32_t part = model.first_part + p;
-            float chance = float(mix_bits(run.models[i].seed + p * 0x9e3779b9u) >> 8) * 0x1p-24f;
+            float chance = float(mix_bits(run.models[i].seed + p * 0x9e3779b9u) >> 8) * 0x1p-24f + turn;
+            if (chance >= 1.0f) chance -= 1.0f;
             PartChoice choice = choose_part(geometry.parts[part], view, settings, chance);
             if ((choice.triangles | choice.points | choice.lines) == 0) continue;
             if (instance == UINT32_MAX)
                 instance = work.add_instance(instance_of(rotation, place.scale, position));
-            work.add(geometry.part_geometry[part], choice, instance);
+            work.add(geometry.part_geometry[part], choice, instance, turn);
         }
     }
     return counts;
@@ -64,8 +67,7 @@ uint64_t expand_terrain(const Terrain& terrain, uint32_t first_vertex, dvec3 cam
         auto levels = terrain.levels().subspan(patch.first_level, patch.level_count);
         size_t level = levels.size() - 1;
         while (level > 0 && levels[level].error_m * frustum.focal_px > error_px * distance_m) --level;
-        work.add_triangles(first_vertex + levels[level].first_vertex, levels[level].vertex_count / 3,
-                           instance, false);
+        work.add_ground(first_vertex + levels[level].first_vertex, levels[level].vertex_count / 3, instance);
         triangles += levels[level].vertex_count / 3;
     }
     return triangles;

@@ -11,9 +11,9 @@ struct ExpandCounts {
     uint64_t full_triangles = 0;
 };
 
-// One run, into one part of the work list. Any thread.
+// One run, into one part of the work list. Any thread. rest_index: RestingFrame::index, which points and lines.
 ExpandCounts expand_plants(const PlantRun& run, const SceneGeometry& geometry, const Frustum& frustum,
-                           const FrameSettings& settings, WorkPart& work);
+                           const FrameSettings& settings, uint32_t rest_index, WorkPart& work);
 
 // The terrain's patches in view, each at the coarsest level whose error stays under a pixel, or all at the finest
 // without levels of detail. Returns the triangles.

@@ -18,7 +18,7 @@ layout(push_constant) uniform Frame {
     vec4 row_w;  // w: near distance in m
     uint first_entry;
     uint entry_count;
-    uint show_kinds;         // 1: colours say which kind of primitive was drawn
+    uint view;               // RepresentationView of lod/settings.h: colours say what was drawn
     uint big_triangle_limit; // capacity of the list of big triangles
 } frame;
 
@@ -27,11 +27,15 @@ layout(binding = 1) uniform utextureBuffer vertices;  // xyz: position in plant 
 layout(binding = 2) uniform utextureBuffer entries;   // two texels an entry
 layout(binding = 3) uniform textureBuffer instances;  // four texels an instance: rows of plant -> world, spare
 
+const uint k_ground_bit = 0x80000000u;  // of an entry's instance: no plant
+const uint k_view_lit = 0u, k_view_kinds = 1u;
+
 struct Entry {
     uint first_vertex, count, instance, first_owner;
     float size_px;   // splat side or line width
     uint owner_min;
     bool cull_back;
+    bool ground;
 };
 
 // The entry of this lane, false where there is none; its primitives are i = first; i < count; i += step.
@@ -53,16 +57,17 @@ bool take_entry(out uint index, out uint first, out uint step) {
 Entry load_entry(uint index) {
     uvec4 a = texelFetch(entries, int(index * 2u));
     uvec4 b = texelFetch(entries, int(index * 2u + 1u));
-    return Entry(a.x, a.y, a.z, a.w, uintBitsToFloat(b.x), b.y, b.z != 0u);
+    return Entry(a.x, a.y, a.z & ~k_ground_bit, a.w, uintBitsToFloat(b.x), b.y, b.z != 0u, (a.z & k_ground_bit) != 0u);
 }
 
 // Plant space -> (column * w, row * w, w), and the rotation for normals.
 struct Transform {
     vec4 to_x, to_y, to_w;
     vec3 turn_x, turn_y, turn_z;
+    bool ground;
 };
 
-Transform load_transform(uint instance) {
+Transform load_transform(uint instance, bool ground) {
     vec4 x = texelFetch(instances, int(instance * 4u));
     vec4 y = texelFetch(instances, int(instance * 4u + 1u));
     vec4 z = texelFetch(instances, int(instance * 4u + 2u));
@@ -73,6 +78,7 @@ Transform load_transform(uint instance) {
     t.turn_x = x.xyz;
     t.turn_y = y.xyz;
     t.turn_z = z.xyz;
+    t.ground = ground;
     return t;
 }
 
@@ -90,7 +96,8 @@ uint turn_surface(Transform t, uint surface, uint kind) {
     vec3 n = decode_normal(surface);
     uint turned = encode_normal(vec3(dot(t.turn_x, n), dot(t.turn_y, n), dot(t.turn_z, n)));
     uint kind_color = kind == k_kind_point ? 0x0000f000u | 0x0001f000u : kind == k_kind_line ? 0x0f800000u : 0x007e0000u;
-    uint color = frame.show_kinds != 0u ? kind_color : surface & k_color_bits;
+    uint plant_color = t.ground ? 0u : k_color_bits;
+    uint color = frame.view == k_view_lit ? surface & k_color_bits : frame.view == k_view_kinds ? kind_color : plant_color;
     return (surface & ~(k_normal_bits | k_color_bits)) | turned | color;
 }
 

@@ -80,7 +80,7 @@ void main() {
     float near_m = frame.row_w.w;
     for (uint i = gl_WorkGroupID.x; i < count; i += gl_NumWorkGroups.x) {
         uvec2 reference = big[i];
-        Transform t = load_transform(reference.y);
+        Transform t = load_transform(reference.y & ~k_ground_bit, (reference.y & k_ground_bit) != 0u);
         Corner corner[3];
         uint surface, kept = 0u;
         for (int v = 0; v < 3; ++v) {

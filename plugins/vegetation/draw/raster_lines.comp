@@ -9,7 +9,7 @@ void main() {
     uint index, first_item, step;
     if (!take_entry(index, first_item, step)) return;
     Entry entry = load_entry(index);
-    Transform t = load_transform(entry.instance);
+    Transform t = load_transform(entry.instance, entry.ground);
     ivec2 size = ivec2(frame.row_x.w, frame.row_y.w);
     float near_m = frame.row_w.w;
 

@@ -8,7 +8,7 @@
 layout(binding = 4) buffer BigTriangles {
     uint big_count;
     uint big_unused[3];
-    uvec2 big[];  // first vertex, instance
+    uvec2 big[];  // first vertex, instance with k_ground_bit
 };
 
 const float k_side_limit_px = 32.0;  // longer triangles are shared by a group's lanes
@@ -17,7 +17,7 @@ void main() {
     uint index, first_item, step;
     if (!take_entry(index, first_item, step)) return;
     Entry entry = load_entry(index);
-    Transform t = load_transform(entry.instance);
+    Transform t = load_transform(entry.instance, entry.ground);
     vec2 size = vec2(frame.row_x.w, frame.row_y.w);
     float near_m = frame.row_w.w;
 
@@ -44,7 +44,7 @@ void main() {
         }
         if (across || any(greaterThan(high - low, vec2(k_side_limit_px)))) {
             uint slot = atomicAdd(big_count, 1u);
-            if (slot < frame.big_triangle_limit) big[slot] = uvec2(first_vertex, entry.instance);
+            if (slot < frame.big_triangle_limit) big[slot] = uvec2(first_vertex, entry.instance | (entry.ground ? k_ground_bit : 0u));
             continue;
         }
         uint surface0 = turn_surface(t, v0.w, k_kind_triangle);

@@ -15,6 +15,7 @@ namespace {
 
 constexpr uint32_t k_first_big_triangles = 1u << 18;
 constexpr uint32_t k_first_instances = 1u << 14, k_first_entries = 1u << 16;
+constexpr uint64_t k_pixel_radiance_bytes = 12;
 constexpr uint32_t k_pixels_a_group = 256;  // resolve.comp's k_run
 
 struct LightBlock {
@@ -93,7 +94,7 @@ Status Rasteriser::make_pipelines() {
                                                   BindingKind::texel, BindingKind::texel,
                                                   BindingKind::storage};
     static constexpr BindingKind k_resolve[] = {BindingKind::storage, BindingKind::storage,
-                                                BindingKind::storage};
+                                                BindingKind::storage, BindingKind::storage};
     auto make = [this](const char* name, std::span<const uint32_t> spirv,
                        std::span<const BindingKind> bindings, uint32_t constant_bytes,
                        std::initializer_list<uint32_t> specialization) {
@@ -122,7 +123,9 @@ Status Rasteriser::make_pipelines() {
     COPPICE_TRY(big_pipeline_, make("big triangles", k_raster_big_triangles_spirv, k_triangles,
                                     sizeof(RasterConstants), {lanes}));
     COPPICE_TRY(resolve_pipeline_,
-                make("resolve", k_resolve_spirv, k_resolve, sizeof(ResolveConstants), {lanes}));
+                make("resolve", k_resolve_spirv, k_resolve, sizeof(ResolveConstants), {lanes, 0}));
+    COPPICE_TRY(resolve_keep_pipeline_,
+                make("resolve, kept", k_resolve_spirv, k_resolve, sizeof(ResolveConstants), {lanes, 1}));
     return {};
 }
 
@@ -160,10 +163,27 @@ Status Rasteriser::resize(uint32_t width, uint32_t height) {
     COPPICE_TRY(gpu::Buffer visibility,
                 gpu::Buffer::create(device_, device_buffer(pixels * 8, "visibility")));
     COPPICE_TRY(gpu::Buffer color, gpu::Buffer::create(device_, device_buffer(pixels * 4, "color")));
+    COPPICE_TRY(gpu::Buffer no_radiance,
+                gpu::Buffer::create(device_, device_buffer(k_pixel_radiance_bytes, "radiance")));
     visibility_ = std::move(visibility);
     color_ = std::move(color);
+    radiance_ = std::move(no_radiance);
     width_ = width;
     height_ = height;
+    return {};
+}
+
+Status Rasteriser::keep_radiance() {
+    const uint64_t size_bytes = uint64_t(width_) * height_ * k_pixel_radiance_bytes;
+    if (radiance_.size_bytes() >= size_bytes) return {};
+    if (size_bytes > device_.limits.storage_range_bytes)
+        return fail(ErrorId::limit_exceeded, "", "mean of frames",
+                    std::to_string(width_) + "x" + std::to_string(height_),
+                    "this device takes " +
+                        std::to_string(device_.limits.storage_range_bytes / k_pixel_radiance_bytes) +
+                        " pixels");
+    vkDeviceWaitIdle(device_.handle);
+    COPPICE_TRY(radiance_, gpu::Buffer::create(device_, device_buffer(size_bytes, "radiance")));
     return {};
 }
 
@@ -210,9 +230,10 @@ void Rasteriser::add_passes() {
     visibility_resource_ = graph_.add_buffer("visibility", &visibility_);
     big_resource_ = graph_.add_buffer("big triangles", &big_triangles_);
     color_resource_ = graph_.add_buffer("color", &color_);
+    radiance_resource_ = graph_.add_buffer("radiance", &radiance_);
     big_count_resource_ = graph_.add_buffer("big count", &slots_[0].big_count);
 
-    graph_.add_pass(
+    clear_pass_ = graph_.add_pass(
         "clear",
         {{visibility_resource_, BufferAccess::transfer_write}, {big_resource_, BufferAccess::transfer_write}},
         [this](VkCommandBuffer commands) {
@@ -251,31 +272,37 @@ void Rasteriser::add_passes() {
     add_draw("points large", WorkKind::points_any, {{visibility_resource_, BufferAccess::compute_atomic}});
     add_draw("points blended", WorkKind::points_blend,
              {{visibility_resource_, BufferAccess::compute_atomic}});
-    graph_.add_pass("resolve",
-                    {{visibility_resource_, BufferAccess::compute_read},
-                     {color_resource_, BufferAccess::compute_write},
-                     {big_count_resource_, BufferAccess::host_read}},
-                    [this](VkCommandBuffer commands) {
-                        const gpu::Buffer* buffers[] = {&visibility_, &color_, &slots_[slot_].light};
-                        resolve_pipeline_.bind(commands, buffers, &resolve_, sizeof resolve_);
-                        resolve_pipeline_.dispatch(commands, ((width_ - 1) / k_pixels_a_group + 1) * height_);
-                    });
+    resolve_pass_ = graph_.add_pass(
+        "resolve",
+        {{visibility_resource_, BufferAccess::compute_read},
+         {color_resource_, BufferAccess::compute_write},
+         {radiance_resource_, BufferAccess::compute_read_write},
+         {big_count_resource_, BufferAccess::host_read}},
+        [this](VkCommandBuffer commands) {
+            const gpu::Buffer* buffers[] = {&visibility_, &color_, &slots_[slot_].light, &radiance_};
+            const gpu::Pipeline& pipeline =
+                resolve_.new_share > 0.0f ? resolve_keep_pipeline_ : resolve_pipeline_;
+            pipeline.bind(commands, buffers, &resolve_, sizeof resolve_);
+            pipeline.dispatch(commands, ((width_ - 1) / k_pixels_a_group + 1) * height_);
+        });
 }
 
 void Rasteriser::set_frame(uint32_t slot, const WorkList::Layout& layout, const Camera& camera,
-                           const Light& light, bool show_kinds) {
+                           const Light& light, const PictureSettings& picture) {
     slot_ = slot;
     layout_ = layout;
     read_big_count(slot);
     graph_.set_buffer(big_count_resource_, &slots_[slot].big_count);
     Frustum frustum = make_frustum(camera, width_, height_);
     float half_width = 0.5f * float(width_), half_height = 0.5f * float(height_);
-    vec3 row_x = frustum.right * frustum.focal_px + frustum.forward * half_width;
-    vec3 row_y = frustum.up * -frustum.focal_px + frustum.forward * half_height;
+    vec3 row_x = frustum.right * frustum.focal_px + frustum.forward * (half_width - picture.shift_px.x);
+    vec3 row_y = frustum.up * -frustum.focal_px + frustum.forward * (half_height - picture.shift_px.y);
     raster_.row_x = vec4(row_x, float(width_));
     raster_.row_y = vec4(row_y, float(height_));
     raster_.row_w = vec4(frustum.forward, camera.near_m);
-    raster_.show_kinds = resolve_.show_kinds = show_kinds ? 1 : 0;
+    raster_.view = resolve_.view = uint32_t(picture.view);
+    resolve_.new_share = picture.new_share;
+    resolve_.shift_px = picture.shift_px;
     raster_.big_triangle_limit = big_limit_;
     resolve_.right = vec4(frustum.right * (1.0f / frustum.focal_px), float(width_));
     resolve_.up = vec4(frustum.up * (1.0f / frustum.focal_px), float(height_));
@@ -294,11 +321,19 @@ void Rasteriser::set_frame(uint32_t slot, const WorkList::Layout& layout, const 
     bool any = layout.groups[triangles].entry_count > 0 || layout.lanes[triangles].entry_count > 0;
     graph_.set_active(big_pass_, any);
     graph_.set_active(big_count_pass_, any);
+    graph_.set_active(clear_pass_, true);
+    graph_.set_active(resolve_pass_, true);
+}
+
+void Rasteriser::skip_frame() {
+    for (uint32_t pass : draw_passes_) graph_.set_active(pass, false);
+    for (uint32_t pass : {clear_pass_, big_pass_, big_count_pass_, resolve_pass_})
+        graph_.set_active(pass, false);
 }
 
 uint64_t Rasteriser::gpu_bytes() const {
-    uint64_t total = visibility_.size_bytes() + color_.size_bytes() + vertices_.size_bytes() +
-                     owners_.size_bytes() + big_triangles_.size_bytes();
+    uint64_t total = visibility_.size_bytes() + color_.size_bytes() + radiance_.size_bytes() +
+                     vertices_.size_bytes() + owners_.size_bytes() + big_triangles_.size_bytes();
     for (const Slot& slot : slots_)
         total += slot.instances.size_bytes() + slot.entries.size_bytes() + slot.light.size_bytes();
     return total;

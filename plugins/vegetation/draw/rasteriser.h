@@ -17,6 +17,14 @@ struct GeometryData {
     std::span<const uint32_t> owners;
 };
 
+// How the frame's surfaces become a picture.
+struct PictureSettings {
+    RepresentationView view = RepresentationView::lit;
+    vec2 shift_px{0.0f};  // where in the pixel it is sampled, from its centre: right and down
+    // Share of this frame in the mean that radiance() keeps, (0, 1]; 1 forgets those before. 0: nothing is kept.
+    float new_share = 0.0f;
+};
+
 class Rasteriser {
   public:
     ~Rasteriser();  // waits for the device
@@ -36,11 +44,18 @@ class Rasteriser {
     // Makes room for more; waits for the device. Contents are lost.
     Status grow(uint32_t slot, uint32_t instance_count, uint32_t entry_count);
     void set_frame(uint32_t slot, const WorkList::Layout& layout, const Camera& camera, const Light& light,
-                   bool show_kinds);
+                   const PictureSettings& picture);
+    // A frame that draws nothing: the picture stays as it is.
+    void skip_frame();
+    // Makes radiance() fit the picture; waits for the device the first time at a size. Errors: limit_exceeded where the
+    // device takes no buffer of 12 bytes a pixel.
+    Status keep_radiance();
 
     uint32_t width() const { return width_; }
     uint32_t height() const { return height_; }
     const gpu::Buffer& color() const { return color_; }
+    // Linear radiance, three floats a pixel, before exposure and tone curve: the mean of the frames kept.
+    const gpu::Buffer& radiance() const { return radiance_; }
     const gpu::Buffer& visibility() const { return visibility_; }
     // Large triangles that found no room in the list of the last finished frame of this slot.
     uint32_t dropped_triangles() const { return dropped_triangles_; }
@@ -50,11 +65,13 @@ class Rasteriser {
   private:
     struct RasterConstants {
         vec4 row_x, row_y, row_w;
-        uint32_t first_entry, entry_count, show_kinds, big_triangle_limit;
+        uint32_t first_entry, entry_count, view, big_triangle_limit;
     };
     struct ResolveConstants {
         vec4 right, up, forward;
-        uint32_t show_kinds, unused[3];
+        uint32_t view;
+        float new_share;
+        vec2 shift_px;
     };
     struct Slot {
         gpu::Buffer instances, entries, light;
@@ -72,13 +89,13 @@ class Rasteriser {
     const gpu::Device& device_;
     FrameGraph& graph_;
     uint32_t width_ = 0, height_ = 0;
-    gpu::Buffer visibility_, color_, vertices_, owners_, big_triangles_;
+    gpu::Buffer visibility_, color_, radiance_, vertices_, owners_, big_triangles_;
     std::vector<Slot> slots_;
     std::array<gpu::Pipeline, k_work_kinds> group_pipelines_, lane_pipelines_;
-    gpu::Pipeline big_pipeline_, resolve_pipeline_;
-    ResourceIndex visibility_resource_ = 0, color_resource_ = 0, big_resource_ = 0;
+    gpu::Pipeline big_pipeline_, resolve_pipeline_, resolve_keep_pipeline_;
+    ResourceIndex visibility_resource_ = 0, color_resource_ = 0, radiance_resource_ = 0, big_resource_ = 0;
     std::array<uint32_t, k_work_kinds> draw_passes_{};
-    uint32_t big_pass_ = 0, big_count_pass_ = 0;
+    uint32_t clear_pass_ = 0, big_pass_ = 0, big_count_pass_ = 0, resolve_pass_ = 0;
     ResourceIndex big_count_resource_ = 0;
     uint32_t big_limit_ = 0, dropped_triangles_ = 0;
 

@@ -38,7 +38,7 @@ Result<SceneGeometry> gather_geometry(const Scene& scene, std::span<const Plant>
             geometry.part_geometry.push_back(
                 {first_triangle_vertex + part.first_triangle * 3, first_point + part.first_point,
                  first_line_vertex + part.first_line * 2, first_owner + part.first_point,
-                 (part.flags & k_part_faces_outwards) != 0});
+                 (part.flags & k_part_faces_outwards) != 0, part.point_count, part.line_count});
             geometry.parts.push_back(part);
             model.triangle_count += part.triangle_count;
         }

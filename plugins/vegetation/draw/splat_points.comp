@@ -13,7 +13,7 @@ void main() {
     uint index, first_item, step;
     if (!take_entry(index, first_item, step)) return;
     Entry entry = load_entry(index);
-    Transform t = load_transform(entry.instance);
+    Transform t = load_transform(entry.instance, entry.ground);
     ivec2 size = ivec2(frame.row_x.w, frame.row_y.w);
     float half_side = entry.size_px * 0.5;
     int side = k_side_limit > 0u ? int(k_side_limit) : min(int(ceil(entry.size_px)), 64);

@@ -43,10 +43,24 @@ void WorkPart::add_triangles(uint32_t first_vertex, uint32_t count, uint32_t ins
     add_run(WorkKind::triangles, {first_vertex, count, instance, 0, 0.0f, 0, cull_back ? 1u : 0u, 0}, 3);
 }
 
-void WorkPart::add(const PartGeometry& geometry, const PartChoice& choice, uint32_t instance) {
+void WorkPart::add_ground(uint32_t first_vertex, uint32_t triangle_count, uint32_t instance) {
+    add_triangles(first_vertex, triangle_count, instance | k_ground_bit, false);
+}
+
+void WorkPart::add(const PartGeometry& geometry, const PartChoice& choice, uint32_t instance, float start) {
     add_triangles(geometry.first_triangle_vertex, choice.triangles, instance, geometry.cull_back);
-    add_run(WorkKind::lines,
-            {geometry.first_line_vertex, choice.lines, instance, 0, choice.line_width_px, 0, 0, 0}, 2);
+    // The part of a run of `count` from `start` on, and what is left for the list's beginning.
+    auto cut = [start](uint32_t count, uint32_t stored) {
+        uint32_t first = std::min(uint32_t(start * float(stored)), stored);
+        return std::pair(first, std::min(count, stored - first));
+    };
+    auto [first_line, lines_from_start] = cut(choice.lines, geometry.line_count);
+    WorkEntry line{geometry.first_line_vertex, 0, instance, 0, choice.line_width_px, 0, 0, 0};
+    line.count = choice.lines - lines_from_start;
+    add_run(WorkKind::lines, line, 2);
+    line.first_vertex += 2 * first_line;
+    line.count = lines_from_start;
+    add_run(WorkKind::lines, line, 2);
     // A side a rounding error over a whole pixel must not cost four times the pixels.
     constexpr float k_slack = 1.0e-3f;
     float side = choice.splat_px;
@@ -54,10 +68,15 @@ void WorkPart::add(const PartGeometry& geometry, const PartChoice& choice, uint3
                     : side <= 1.0f + k_slack   ? WorkKind::points_1
                     : side <= 2.0f + k_slack   ? WorkKind::points_2
                                                : WorkKind::points_any;
-    add_run(kind,
-            {geometry.first_point, choice.points, instance, geometry.first_owner, side,
-             choice.point_owner_min, 0, 0},
-            1);
+    auto [first_point, points_from_start] = cut(choice.points, geometry.point_count);
+    WorkEntry point{geometry.first_point,   0, instance, geometry.first_owner, side,
+                    choice.point_owner_min, 0, 0};
+    point.count = choice.points - points_from_start;
+    add_run(kind, point, 1);
+    point.first_vertex += first_point;
+    point.first_owner += first_point;
+    point.count = points_from_start;
+    add_run(kind, point, 1);
     triangles += choice.triangles;
     lines += choice.lines;
     points += choice.points - choice.skipped_points;
@@ -96,7 +115,8 @@ WorkList::Layout WorkList::gather(std::span<WorkInstance> instances, std::span<W
     auto append = [&](const std::vector<WorkEntry>& list, size_t part) {
         for (WorkEntry entry : list) {
             entry.instance += first_instance_[part];
-            if (layout.entry_count >= entries.size() || entry.instance >= layout.instance_count) {
+            if (layout.entry_count >= entries.size() ||
+                (entry.instance & ~k_ground_bit) >= layout.instance_count) {
                 ++layout.dropped_entries;
                 continue;
             }

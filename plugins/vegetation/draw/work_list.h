@@ -19,14 +19,16 @@ inline constexpr size_t k_work_kinds = 6;
 struct WorkEntry {
     uint32_t first_vertex;  // in the geometry buffer
     uint32_t count;         // primitives
-    uint32_t instance;
-    uint32_t first_owner;  // points_blend only
-    float size_px;         // splat side or line width
-    uint32_t owner_min;    // points_blend only
-    uint32_t cull_back;    // triangles only: 1: those that turn their back are left out
+    uint32_t instance;      // its highest bit: k_ground_bit
+    uint32_t first_owner;   // points_blend only
+    float size_px;          // splat side or line width
+    uint32_t owner_min;     // points_blend only
+    uint32_t cull_back;     // triangles only: 1: those that turn their back are left out
     uint32_t unused;
 };
 static_assert(sizeof(WorkEntry) == 32);
+
+inline constexpr uint32_t k_ground_bit = 1u << 31;  // not a plant
 
 // 64 bytes, four texels: rows of the matrix from plant space to camera-relative world space.
 struct WorkInstance {
@@ -43,6 +45,7 @@ inline constexpr size_t k_lane_buckets = 4;  // up to 4, 8, 16, 32 primitives: l
 struct PartGeometry {
     uint32_t first_triangle_vertex, first_point, first_line_vertex, first_owner;
     bool cull_back;  // the triangles are wound and closed so that their backs are never seen
+    uint32_t point_count, line_count;  // stored
 };
 
 // What one job adds. Kept from frame to frame, so that a warm frame allocates nothing.
@@ -51,13 +54,15 @@ class WorkPart {
     void clear();
     // Index of the instance within this part, for add().
     uint32_t add_instance(const WorkInstance& instance);
-    void add(const PartGeometry& geometry, const PartChoice& choice, uint32_t instance);
-    void add_triangles(uint32_t first_vertex, uint32_t count, uint32_t instance, bool cull_back);
+    // start in [0, 1): where in their lists the points and lines begin; they go on at the lists' beginning.
+    void add(const PartGeometry& geometry, const PartChoice& choice, uint32_t instance, float start = 0.0f);
+    void add_ground(uint32_t first_vertex, uint32_t triangle_count, uint32_t instance);
 
     uint64_t triangles = 0, lines = 0, points = 0;
 
   private:
     friend class WorkList;
+    void add_triangles(uint32_t first_vertex, uint32_t count, uint32_t instance, bool cull_back);
     void add_run(WorkKind kind, WorkEntry entry, uint32_t vertices_a_primitive);
     std::vector<WorkInstance> instances_;
     std::array<std::vector<WorkEntry>, k_work_kinds> groups_;

@@ -13,7 +13,8 @@ enum class ProjectionMode : uint8_t {
 
 enum class RepresentationView : uint8_t {
     lit,
-    kinds,  // colours by kind: triangles green, lines blue, points red
+    kinds,     // colours by kind: triangles green, lines blue, points red
+    coverage,  // plants white, everything else black: for measurements
 };
 
 struct FrameSettings {
@@ -23,6 +24,10 @@ struct FrameSettings {
     bool level_of_detail = true;  // false: every triangle of everything in view
     bool blend = true;            // false: switch from points to triangles at once
     RepresentationView view = RepresentationView::lit;
+    // While camera, light, scene and settings rest, frames are averaged, up to this many, each sampled at another place
+    // of the pixel; then nothing is drawn until something moves. 0: every frame stands alone.
+    uint32_t accumulate_limit = 0;
+    bool operator==(const FrameSettings&) const = default;
 };
 
 }  // namespace coppice

@@ -15,7 +15,8 @@ struct FrameReport {
     uint64_t work_entries = 0;     // of the work list
     uint64_t dropped_entries = 0;  // did not fit into the work list; its capacity grows for the next frame
     uint64_t dropped_triangles =
-        0;  // large ones beyond the list's capacity in the last finished frame; it grows
+        0;                       // large ones beyond the list's capacity in the last finished frame; it grows
+    uint32_t rested_frames = 0;  // the picture is the mean of so many frames before this one, and this one
     double cull_ms = 0.0, lod_ms = 0.0, write_ms = 0.0;  // CPU: tiles, levels, work list
     uint64_t gpu_bytes = 0;                              // buffers held
 };

@@ -1,6 +1,7 @@
 // READ FIRST: the plugin "images", a module that provides coppice.images.
 #include "plugins/images/images.h"
 
+#include "plugins/images/compare_images.h"
 #include "plugins/images/read_image.h"
 #include "plugins/images/write_image.h"
 #include "runtime/plugin/plugin.h"
@@ -10,7 +11,7 @@ namespace {
 
 constexpr ImagesInterface k_interface = {
     sizeof(ImagesInterface), read_image,        read_image_memory, write_image, encode_png,
-    read_float_image,        write_float_image,
+    read_float_image,        write_float_image, compare_images,
 };
 
 int load(const CoppiceHost* host) {

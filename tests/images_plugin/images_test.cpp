@@ -1,9 +1,11 @@
 // The images module as a host uses it: loaded by name, pictures there and back, hostile files refused.
 #include "plugins/images/images.h"
 #include <gtest/gtest.h>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <utility>
 #include <unistd.h>
 #ifdef __SANITIZE_ADDRESS__
 #include <sanitizer/lsan_interface.h>
@@ -176,6 +178,44 @@ TEST_F(Images, AFewBytesThatAnnounceGigabytesAreRefused) {
     std::string path = folder_ / "huge.tif";
     ASSERT_TRUE(write_file(path, tiff(8192, 8192, 3, some)));
     EXPECT_EQ(images_->read_float(path).error().id, ErrorId::limit_exceeded);
+}
+
+TEST_F(Images, ComparesOverPixelsAndChannels) {
+    // 12 values, of which two differ: by 0.3 and by -0.4.
+    FloatPicture a{2, 2, std::vector<float>(12, 0.5f)}, b = a;
+    b.rgb[0] += 0.3f;
+    b.rgb[7] -= 0.4f;
+    auto difference = images_->compare(a, b);
+    ASSERT_TRUE(difference) << to_string(difference.error());
+    EXPECT_NEAR(difference->mean, 0.7 / 12, 1e-7);
+    EXPECT_NEAR(difference->largest, 0.4, 1e-7);
+    EXPECT_NEAR(difference->rms, std::sqrt(0.25 / 12), 1e-7);
+    EXPECT_NEAR(difference->psnr_db, 10 * std::log10(12 / 0.25), 1e-5);
+    // Values above 1 raise the peak.
+    for (FloatPicture* picture : {&a, &b}) picture->rgb[3] = 10.0f;
+    EXPECT_NEAR(images_->compare(b, a)->psnr_db, 20 + 10 * std::log10(12 / 0.25), 1e-5);
+}
+
+TEST_F(Images, EqualPicturesAreInfinitelyFarFromNoise) {
+    FloatPicture a{3, 1, {0, 1, 2, 3, 4, 5, 6, 7, 8}};
+    auto difference = images_->compare(a, a);
+    ASSERT_TRUE(difference) << to_string(difference.error());
+    EXPECT_EQ(difference->mean, 0.0);
+    EXPECT_EQ(difference->largest, 0.0);
+    EXPECT_EQ(difference->rms, 0.0);
+    EXPECT_EQ(difference->psnr_db, INFINITY);
+}
+
+TEST_F(Images, ComparesNoEmptyOrUnequalPictures) {
+    const FloatPicture wide{4, 1, std::vector<float>(12)}, high{1, 4, std::vector<float>(12)}, empty,
+        cut{4, 1, std::vector<float>(11)};
+    const std::pair<FloatPicture, FloatPicture> pairs[] = {
+        {wide, high}, {empty, empty}, {wide, cut}, {cut, wide}};
+    for (const auto& [a, b] : pairs) {
+        auto difference = images_->compare(a, b);
+        ASSERT_FALSE(difference);
+        EXPECT_EQ(difference.error().id, ErrorId::value_out_of_range);
+    }
 }
 
 TEST_F(Images, FailedWriteLeavesTheOldFile) {

@@ -125,6 +125,26 @@ TEST_F(MethodTest, PlantsCookedAnotherWayStandWhereTheyStood) {
     }
 }
 
+TEST_F(MethodTest, VertexMergingDrawsFewerTrianglesFurtherAwayAndAtLowerQuality) {
+    auto method = make("vertex merging");
+    auto triangles = [&](const Camera& camera, double quality) {
+        auto drawn = method->frame(camera, k_focal_px, quality);
+        EXPECT_TRUE(drawn);
+        EXPECT_EQ(drawn->settings.projection, ProjectionMode::printed);
+        uint64_t count = 0;
+        for (const PlantModel& plant : drawn->scene->scene.plant_models)
+            count += drawn->scene->plants[plant.model].triangle_vertices.size() / 3;
+        return count;
+    };
+    uint64_t before = UINT64_MAX;
+    for (double quality : method->qualities()) {
+        const uint64_t count = triangles({dvec3(0, 2, 0)}, quality);
+        EXPECT_LT(count, before) << quality;
+        EXPECT_LT(triangles({dvec3(0, 2, 500)}, quality), count) << quality;
+        before = count;
+    }
+}
+
 TEST_F(MethodTest, AMissingSourceIsSaid) {
     MethodScene broken = original_;
     broken.scene.models[1].source_path = (dir_ / "none.json").string();

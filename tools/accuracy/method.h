@@ -27,8 +27,11 @@ struct MethodInput {
 };
 
 struct DrawnFrame {
-    const MethodScene* scene;  // lives as long as the method, unchanged; the same one need not be uploaded again
+    const MethodScene* scene;  // unchanged until the method has made four others
     FrameSettings settings;
+    // With the same scene and the same revision nothing needs to be uploaded again. A scene's address alone says
+    // too little: it may have been another scene's before.
+    uint64_t revision = 0;
 };
 
 class AccuracyMethod {

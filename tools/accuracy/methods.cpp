@@ -1,11 +1,15 @@
-// The methods that draw an author's plants as cooked, and the list of all.
+// The list of all methods: those that draw an author's plants as cooked, and those that draw stand-ins.
 #include "tools/accuracy/method.h"
 
 #include <optional>
 #include <utility>
 #include "plugins/vegetation/cook/cook_file.h"
 #include "plugins/vegetation/eco/make_tiles.h"
+#include "runtime/core/jobs.h"
 #include "runtime/core/log.h"
+#include "runtime/core/progress.h"
+#include "tools/accuracy/substitute_models.h"
+#include "tools/accuracy/vertex_merging.h"
 
 namespace coppice {
 namespace {
@@ -121,12 +125,77 @@ std::vector<Hybrid> hybrids() {
     };
 }
 
+// Every plant by the level of its ladder that suits its distance; quality is the grain in pixels.
+struct Substitute {
+    const char* name;
+    const char* what;
+    const char* quality_name;
+    std::vector<double> qualities;
+    double default_quality;
+    Result<SubstituteLadder> (*make_ladder)(const Plant& plant);
+};
+
+class SubstituteMethod final : public AccuracyMethod {
+  public:
+    explicit SubstituteMethod(Substitute substitute) : substitute_(std::move(substitute)) {}
+    std::string name() const override { return substitute_.name; }
+    std::string what() const override { return substitute_.what; }
+    std::string quality_name() const override { return substitute_.quality_name; }
+    std::vector<double> qualities() const override { return substitute_.qualities; }
+    double default_quality() const override { return substitute_.default_quality; }
+
+    Status prepare(const MethodInput& input) override {
+        const std::vector<Plant>& plants = input.original->plants;
+        std::vector<Result<SubstituteLadder>> made(plants.size());
+        Progress progress("making plants of " + name(), plants.size());
+        parallel_for(plants.size(), 1, [&](size_t first, size_t last) {
+            for (size_t i = first; i < last; ++i) {
+                made[i] = substitute_.make_ladder(plants[i]);
+                progress.advance();
+            }
+        });
+        std::vector<SubstituteLadder> ladders;
+        for (Result<SubstituteLadder>& one : made) {
+            COPPICE_TRY(SubstituteLadder ladder, std::move(one));
+            ladders.push_back(std::move(ladder));
+        }
+        scenes_ = std::make_unique<SubstituteScenes>(*input.original, std::move(ladders));
+        return {};
+    }
+
+    Result<DrawnFrame> frame(const Camera& camera, float focal_px, double quality) override {
+        const SubstituteScenes::Choice choice = scenes_->choose(camera, focal_px, quality);
+        FrameSettings settings;
+        settings.sample_distance_px = float(quality);
+        // Half the area for any direction: what a stand-in's area_m2 is given for.
+        settings.projection = ProjectionMode::printed;
+        return DrawnFrame{choice.scene, settings, choice.revision};
+    }
+
+  private:
+    Substitute substitute_;
+    std::unique_ptr<SubstituteScenes> scenes_;
+};
+
+std::vector<Substitute> substitutes() {
+    return {
+        {"vertex merging",
+         "Triangles only, vertices merged in the cells of a grid (Rossignac and Borrel 1993).",
+         "cell px",
+         {0.5, 1.0, 2.0, 4.0, 8.0, 16.0},
+         1.0,
+         &make_vertex_merging_ladder},
+    };
+}
+
 }  // namespace
 
 std::vector<std::unique_ptr<AccuracyMethod>> make_accuracy_methods() {
     std::vector<std::unique_ptr<AccuracyMethod>> methods;
     for (uint32_t samples : {1u, 4u}) methods.push_back(std::make_unique<FullMethod>(samples));
     for (Hybrid& hybrid : hybrids()) methods.push_back(std::make_unique<HybridMethod>(std::move(hybrid)));
+    for (Substitute& substitute : substitutes())
+        methods.push_back(std::make_unique<SubstituteMethod>(std::move(substitute)));
     return methods;
 }
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <string>
 #include <gtest/gtest.h>
+#include "tools/coppice/page_text.h"
 #include "tools/coppice/play_options.h"
 #include "tools/coppice/play_page.h"
 #include "tools/coppice/play_plot.h"

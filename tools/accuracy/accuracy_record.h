@@ -32,6 +32,7 @@ struct AccuracyMethodRecord {
     std::string what;          // one sentence
     std::string quality_name;  // "d' px"; "" where there is nothing to sweep
     bool is_default = false;   // what the program does when nothing is chosen
+    double default_quality = 0.0;
     // Over all views of a flight at the method's default quality; empty where not measured.
     std::optional<double> pop_energy, shimmer;
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include "tools/coppice/page_text.h"
 #include "tools/coppice/statistics.h"
 
 namespace coppice {
@@ -97,36 +98,6 @@ std::string stacked_plot(const std::vector<double>& all_x, const std::vector<Plo
         svg += fmt::format("<span><i style=\"background:{}\"></i>{}</span>", series[s].color,
                            escape_html(series[s].name));
     return svg + "</p>\n";
-}
-
-std::string short_count(double value) {
-    static constexpr const char* k_units[] = {"", " k", " M", " G", " T"};
-    size_t unit = 0;
-    for (; std::abs(value) >= 999.5 && unit + 1 < std::size(k_units); ++unit) value /= 1000.0;
-    return fmt::format("{:.3g}{}", value, k_units[unit]);
-}
-
-std::string escape_html(const std::string& text) {
-    std::string escaped;
-    for (char c : text) {
-        switch (c) {
-            case '&':
-                escaped += "&amp;";
-                break;
-            case '<':
-                escaped += "&lt;";
-                break;
-            case '>':
-                escaped += "&gt;";
-                break;
-            case '"':
-                escaped += "&quot;";
-                break;
-            default:
-                escaped += c;
-        }
-    }
-    return escaped;
 }
 
 }  // namespace coppice

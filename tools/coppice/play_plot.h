@@ -23,8 +23,4 @@ struct PlotSettings {
 std::string stacked_plot(const std::vector<double>& x, const std::vector<PlotSeries>& series,
                          const PlotSettings& settings);
 
-// 1234567 -> "1.23 M". Three digits that count.
-std::string short_count(double value);
-std::string escape_html(const std::string& text);
-
 }  // namespace coppice

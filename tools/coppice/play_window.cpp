@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include "runtime/plugin/registry.h"
+#include "tools/coppice/page_text.h"
 #include "tools/coppice/play_host.h"
-#include "tools/coppice/play_plot.h"
 #include "tools/coppice/statistics.h"
 #include "tools/coppice/stopwatch.h"
 #include "tools/window/window_interface.h"

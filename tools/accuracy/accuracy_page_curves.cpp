@@ -163,30 +163,42 @@ std::string resting_plots(const PageInput& page, const Ranges& ranges, const Res
     return html;
 }
 
-// When each error falls below the full geometry's.
-std::string resting_answer(const RestingCurve& curve) {
+// When each error falls below the full geometry's, and how far it goes.
+std::string resting_table(const RestingCurve& curve) {
     if (!curve.full || curve.entries.empty()) return {};
-    const AccuracyRecord::Resting& last = curve.entries.back();
-    return of_both_truths("p", [&](Truth truth) {
-        std::string text = fmt::format("Against full geometry, mean of the views: ");
-        for (const PageMetric& metric : k_page_metrics) {
-            auto error = [&](const AccuracyRecord::Resting& entry) {
-                return (truth == Truth::shadowed ? entry.errors : entry.unshadowed_errors).*metric.field;
-            };
-            const double limit = curve.full->against(truth).*metric.field;
-            auto below = std::find_if(curve.entries.begin(), curve.entries.end(),
-                                      [&](auto& entry) { return error(entry) <= limit; });
-            text +=
-                below == curve.entries.end()
-                    ? fmt::format("{} stays above it ({} after {} frames)", metric.name,
-                                  error_text(error(last)), last.frames)
-                    : fmt::format("<b>{} is no larger after {} frame{}</b> ({}), {} of it after {}",
-                                  metric.name, below->frames, below->frames == 1 ? "" : "s",
-                                  time_text(below->total_ms), times_text(error(last) / limit), last.frames);
-            text += &metric == std::end(k_page_metrics) - 1 ? "." : "; ";
-        }
-        return text;
-    });
+    const AccuracyRecord::Resting &first = curve.entries.front(), &last = curve.entries.back();
+    std::string html = fmt::format(
+        "<div class=\"scroll\"><table class=\"numbers\"><thead><tr><th class=\"text\">mean of the views</th>"
+        "<th>{}</th><th>after {} frame{}</th><th>after {}</th><th>of full geometry's</th><th "
+        "class=\"text\">no larger "
+        "than full geometry's</th></tr></thead>",
+        k_full_name, first.frames, first.frames == 1 ? "" : "s", last.frames);
+    return html +
+           of_both_truths(
+               "tbody",
+               [&](Truth truth) {
+                   std::string rows;
+                   for (const PageMetric& metric : k_page_metrics) {
+                       auto error = [&](const AccuracyRecord::Resting& entry) {
+                           return (truth == Truth::shadowed ? entry.errors : entry.unshadowed_errors).*
+                                  metric.field;
+                       };
+                       const double limit = curve.full->against(truth).*metric.field;
+                       const auto below = std::find_if(curve.entries.begin(), curve.entries.end(),
+                                                       [&](auto& entry) { return error(entry) <= limit; });
+                       rows += fmt::format(
+                           "<tr><td class=\"text\">{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td "
+                           "class=\"text\">{}</td></tr>\n",
+                           metric.name, error_text(limit), error_text(error(first)), error_text(error(last)),
+                           times_text(error(last) / limit),
+                           below == curve.entries.end()
+                               ? std::string("<span class=\"bad\">in none of them</span>")
+                               : fmt::format("<span class=\"good\">from frame {}, {}</span>", below->frames,
+                                             time_text(below->total_ms)));
+                   }
+                   return rows;
+               }) +
+           "</table></div>\n";
 }
 
 }  // namespace
@@ -240,7 +252,7 @@ std::string resting_section(const PageInput& page) {
         "one "
         "picture, each from another place of the pixel: the error after n frames of the default "
         "method.</p>\n" +
-        resting_answer(mean) + open_view("mean") + resting_plots(page, ranges, mean) + "</div>\n";
+        resting_table(mean) + open_view("mean") + resting_plots(page, ranges, mean) + "</div>\n";
     if (record.views.size() > 1)
         for (uint32_t view = 0; view < record.views.size(); ++view)
             html += open_view(std::to_string(view)) +

@@ -141,9 +141,7 @@ std::string log_plot(const std::vector<LogPlotSeries>& series, const LogPlotSett
             if (!std::isfinite(point.x) || !std::isfinite(point.y)) continue;
             const double x = at_x(point.x), y = at_y(point.y);
             line += fmt::format("{}{:.1f},{:.1f}", line.empty() ? "M" : "L", x, y);
-            markers += marker(one.style, x, y, point.title) +
-                       "
-                       ";
+            markers += marker(one.style, x, y, point.title) + "\n";
         }
         if (line.empty()) continue;
         svg +=

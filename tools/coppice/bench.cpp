@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include "runtime/core/file.h"
+#include "tools/coppice/bench_accuracy.h"
 #include "tools/coppice/bench_cook.h"
 #include "tools/coppice/bench_ecs.h"
 #include "tools/coppice/bench_raster.h"
@@ -29,7 +30,10 @@ Examples:
   coppice bench ecs
   coppice bench cook --json out/cook.json
   coppice bench raster --device llvmpipe --json out/raster.json
-  coppice bench stand --strict        exit code 1 where a figure does not reach what it is to reach)";
+  coppice bench stand --strict        exit code 1 where a figure does not reach what it is to reach
+  coppice bench accuracy --scene woodland --out out/accuracy-woodland
+      open out/accuracy-woodland/index.html; the first run traces the references, which takes minutes
+  coppice bench accuracy --methods 'measured;billboards' --views my_views.json)";
 }
 
 // Prints the table; returns how many figures do not hold.
@@ -72,6 +76,8 @@ Status run(const BenchCommand& command) {
 
 const std::vector<Bench>& benches() {
     static const std::vector<Bench> k_benches{
+        {"accuracy", "time against error of every method, against a ray-traced reference; a page of curves",
+         bench_accuracy},
         {"cook", "sampling of an oak, whole cooks of oak and pine, the same bytes on 1 and 2 threads",
          bench_cook},
         {"ecs", "a million entities in tiles of 1,000: create, destroy, iterate, find",
@@ -95,6 +101,18 @@ void add_bench(CLI::App& app, Command& chosen) {
         ->default_val("content");
     bench->add_option("--cache", command->settings.cache_dir,
                       "Folder of cooked plants. Default: ~/.cache/coppice");
+    bench
+        ->add_option("--scene", command->settings.scene,
+                     "accuracy: a scene of the content, or *.eco.json, or a plant")
+        ->capture_default_str();
+    bench->add_option(
+        "--views", command->settings.views,
+        "accuracy: camera path whose keys are the views. Default: SCENE_views.json, else five of its flight");
+    bench->add_option("--methods", command->settings.methods,
+                      "accuracy: names or parts of names, with ; between. Default: all");
+    bench->add_option("--size", command->settings.size, "accuracy: of the pictures")->capture_default_str();
+    bench->add_option("--out", command->settings.out,
+                      "accuracy: folder for the page. Default: out/accuracy-SCENE");
     bench->add_flag("--strict", command->strict, "Exit with 1 where a figure does not hold");
     bench->callback([command, &chosen] { chosen = [command] { return run(*command); }; });
 }

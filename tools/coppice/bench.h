@@ -12,7 +12,13 @@ namespace coppice {
 struct BenchSettings {
     std::string device;     // index or part of a name
     std::string content;    // folder of scenes and species
-    std::string cache_dir;  // of cooked plants
+    std::string cache_dir;  // of cooked plants and references
+    // Of `accuracy` alone.
+    std::string scene = "pines";   // of content/scenes, or a file
+    std::string views;             // camera path whose keys are the views; empty: SCENE_views.json
+    std::string methods;           // names or parts of them, with ; between; empty: all
+    std::string size = "795x700";  // of the pictures
+    std::string out;               // folder
 };
 
 struct Bench {

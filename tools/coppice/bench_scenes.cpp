@@ -93,8 +93,8 @@ Result<nlohmann::json> bench_stand(const BenchSettings& settings) {
             auto value = [&](const char* name) { return figure_value(all, name); };
             std::optional<double> reach_db;
             if (stand.peer_db > 0.0) reach_db = stand.peer_db;
-            figures.push_back({prefix + "mean", sum_ms / double(last.frames.size()), "ms", stand.peer_ms / 10.0,
-                               Reach::at_most});
+            figures.push_back({prefix + "mean", sum_ms / double(last.frames.size()), "ms",
+                               stand.peer_ms / 10.0, Reach::at_most});
             figures.push_back({prefix + "median", value("median_ms"), "ms", {}});
             figures.push_back({prefix + "vertices", value("vertices"), "per frame", {}});
             figures.push_back({prefix + "full / lod", value("full_over_lod"), "times", {}});

@@ -73,11 +73,18 @@ Result<std::vector<Plant>> PlayHost::load_plants(const PlayOptions& options) {
         hashes.emplace_back("plant " + scene.models[i].name, plants[i].content_hash);
         bounds.push_back(plants[i].bounds_plant);
     }
+    const auto* terrain = registry.find<TerrainInterface>(k_terrain_interface, k_terrain_version);
     if (is_plant_file(options.scene)) {
-        const auto* terrain = registry.find<TerrainInterface>(k_terrain_interface, k_terrain_version);
         std::vector<CameraKey> chosen_path = std::move(scene.camera_path);
         COPPICE_TRY(scene, make_plant_scene(options.scene, bounds.front(), options.height, terrain));
         if (!chosen_path.empty()) scene.camera_path = std::move(chosen_path);
+    }
+    if (options.keep_scene) {
+        COPPICE_TRY(const Scene again,
+                    is_plant_file(options.scene)
+                        ? make_plant_scene(options.scene, bounds.front(), options.height, terrain)
+                        : load_scene(options.scene, {terrain}));
+        bare_terrain = again.terrain;
     }
     finish_tiles(scene, bounds);
     if (scene.terrain) shade_ground(scene, *scene.terrain, bounds);
@@ -99,7 +106,7 @@ Status PlayHost::create_device(const PlayOptions& options,
     return {};
 }
 
-Status PlayHost::create_vegetation(const PlayOptions& options, std::vector<Plant> plants) {
+Status PlayHost::create_vegetation(const PlayOptions& options, std::vector<Plant> loaded) {
     Stopwatch clock;
     const auto* interface = registry.find<VegetationInterface>(k_vegetation_interface, k_vegetation_version);
     if (!interface)
@@ -114,13 +121,16 @@ Status PlayHost::create_vegetation(const PlayOptions& options, std::vector<Plant
     settings.width = width = options.width;
     settings.height = height = options.height;
     COPPICE_TRY(vegetation, interface->create(settings));
-    COPPICE_CHECK(vegetation->set_scene(scene, std::move(plants)));
+    if (options.keep_scene) plants = loaded;
+    COPPICE_CHECK(vegetation->set_scene(scene, std::move(loaded)));
     // The world has its own: 32 bytes a plant need not be kept twice.
     plant_count = scene.positions.size();
-    scene.positions = {};
-    scene.turns = {};
-    scene.plant_models = {};
-    scene.tiles = {};
+    if (!options.keep_scene) {
+        scene.positions = {};
+        scene.turns = {};
+        scene.plant_models = {};
+        scene.tiles = {};
+    }
     load.upload_ms = clock.ms();
     return {};
 }

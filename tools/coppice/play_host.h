@@ -58,7 +58,9 @@ class PlayHost {
 
     // In the order of what needs what, destroyed from the last to the first.
     Registry registry;
-    Scene scene;  // without its plants once they are in the world
+    Scene scene;                // without its plants once they are in the world, unless options.keep_scene
+    std::vector<Plant> plants;  // plants[i] is scene.models[i]; only with keep_scene
+    std::shared_ptr<Terrain> bare_terrain;  // before plants darkened it; only with keep_scene
     uint64_t plant_count = 0;
     std::vector<std::pair<std::string, uint64_t>> hashes;  // of what was loaded
     LoadTimes load{};
@@ -76,7 +78,7 @@ class PlayHost {
     Status load_scene_file(const PlayOptions& options);
     Result<std::vector<Plant>> load_plants(const PlayOptions& options);
     Status create_device(const PlayOptions& options, const std::vector<const char*>& present_extensions);
-    Status create_vegetation(const PlayOptions& options, std::vector<Plant> plants);
+    Status create_vegetation(const PlayOptions& options, std::vector<Plant> loaded);
 };
 
 }  // namespace coppice

@@ -26,6 +26,7 @@ struct PlayOptions {
     std::string device;
     bool validation = false;
     std::string cache_dir;  // of packed plants; empty: the user's cache folder
+    bool keep_scene = false;  // PlayHost keeps the whole scene and its plants beside what it draws
 };
 
 // "1280x720". Errors: usage.

@@ -1,4 +1,5 @@
 // From radiance to what a screen shows: metrics.h's display_light() and encode_srgb().
+#include <algorithm>
 #include "plugins/vegetation/components.h"
 #include "runtime/core/jobs.h"
 #include "runtime/core/math.h"
@@ -9,7 +10,7 @@ namespace {
 
 constexpr size_t k_grain = size_t(1) << 15;  // values
 
-// The curve passes 1 at radiance 7.3 already; without a limit the squares of huge values would give inf / inf.
+// The curve passes 1 at 7.25 already; without a limit the squares of huge values would give inf / inf.
 constexpr float k_white_radiance = 100.0f;
 
 // light.glsl's present() up to the encoding. Not a number: black.

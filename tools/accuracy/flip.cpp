@@ -6,105 +6,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <span>
 #include "runtime/core/jobs.h"
 #include "runtime/core/math.h"
 #include "tools/accuracy/check_pictures.h"
+#include "tools/accuracy/flip_filters.h"
 
 namespace coppice {
 namespace {
 
-constexpr double k_pi_squared = 9.8696044010893586;
-constexpr float k_color_exponent = 0.7f;           // q_c
-constexpr float k_color_knee = 0.4f;               // p_c: share of the largest colour difference ...
-constexpr float k_color_knee_error = 0.95f;        // p_t: ... that is already this much error
-constexpr double k_feature_width_degrees = 0.082;  // w: of an edge as the eye sees it
+constexpr float k_color_exponent = 0.7f;     // q_c
+constexpr float k_color_knee = 0.4f;         // p_c: share of the largest colour difference ...
+constexpr float k_color_knee_error = 0.95f;  // p_t: ... that is already this much error
 constexpr float k_min_pixels_per_degree = 1.0f, k_max_pixels_per_degree = 1000.0f;
-
-// Weights at -radius ... radius.
-struct Kernel {
-    std::vector<float> weights;
-    uint32_t radius() const { return uint32_t(weights.size() / 2); }
-};
-
-Kernel kernel_of(const std::vector<double>& weights) { return {{weights.begin(), weights.end()}}; }
-
-struct Gaussian {
-    double a, b;  // a sqrt(pi / b) exp(-pi^2 x^2 / b), x in degrees
-};
-constexpr Gaussian k_achromatic[] = {{1.0, 0.0047}};
-constexpr Gaussian k_red_green[] = {{1.0, 0.0053}};
-constexpr Gaussian k_blue_yellow[] = {{34.1, 0.04}, {13.5, 0.025}};
-constexpr double k_widest_b = 0.04;
-
-// A kernel a Gaussian, so scaled that the sum of their squares in two dimensions weighs 1 in all.
-std::vector<Kernel> make_contrast_sensitivity(std::span<const Gaussian> gaussians, double pixels_per_degree) {
-    const int full_radius =
-        int(std::ceil(3.0 * std::sqrt(k_widest_b / (2.0 * k_pi_squared)) * pixels_per_degree));
-    std::vector<std::vector<double>> lines;
-    double total = 0.0;
-    for (const Gaussian& gaussian : gaussians) {
-        const double height = std::sqrt(gaussian.a * std::sqrt(double(k_pi) / gaussian.b));
-        double sum = 0.0;
-        std::vector<double> line;
-        for (int i = -full_radius; i <= full_radius; ++i) {
-            const double x = i / pixels_per_degree;
-            line.push_back(height * std::exp(-k_pi_squared * x * x / gaussian.b));
-            sum += line.back();
-        }
-        total += sum * sum;
-        // The radius is that of the widest. What no float can add costs only time.
-        while (line.size() > 1 && line.back() < 1e-10 * height) {
-            line.pop_back();
-            line.erase(line.begin());
-        }
-        lines.push_back(std::move(line));
-    }
-    std::vector<Kernel> kernels;
-    for (std::vector<double>& line : lines) {
-        for (double& weight : line) weight /= std::sqrt(total);
-        kernels.push_back(kernel_of(line));
-    }
-    return kernels;
-}
-
-// Positive weights to a sum of 1, negative ones to -1, each on its own.
-Kernel normalize_by_sign(std::vector<double> weights) {
-    double positive = 0.0, negative = 0.0;
-    for (double weight : weights) (weight > 0.0 ? positive : negative) += weight;
-    for (double& weight : weights)
-        if (weight != 0.0) weight /= weight > 0.0 ? positive : -negative;
-    return kernel_of(weights);
-}
-
-struct Filters {
-    std::vector<Kernel> achromatic, red_green, blue_yellow;
-    Kernel smooth, edge, point;  // a Gaussian, its first and its second derivative
-    uint32_t pad = 0;            // largest radius
-};
-
-Filters make_filters(double pixels_per_degree) {
-    Filters filters;
-    filters.achromatic = make_contrast_sensitivity(k_achromatic, pixels_per_degree);
-    filters.red_green = make_contrast_sensitivity(k_red_green, pixels_per_degree);
-    filters.blue_yellow = make_contrast_sensitivity(k_blue_yellow, pixels_per_degree);
-    const double sigma = 0.5 * k_feature_width_degrees * pixels_per_degree;
-    const int radius = int(std::ceil(3.0 * sigma));
-    std::vector<double> smooth, edge, point;
-    for (int x = -radius; x <= radius; ++x) {
-        const double gaussian = std::exp(-x * x / (2.0 * sigma * sigma));
-        smooth.push_back(gaussian);
-        edge.push_back(-x * gaussian);
-        point.push_back((x * x / (sigma * sigma) - 1.0) * gaussian);
-    }
-    filters.smooth = normalize_by_sign(smooth);
-    filters.edge = normalize_by_sign(edge);
-    filters.point = normalize_by_sign(point);
-    filters.pad = uint32_t(radius);
-    for (const auto* kernels : {&filters.achromatic, &filters.red_green, &filters.blue_yellow})
-        for (const Kernel& kernel : *kernels) filters.pad = std::max(filters.pad, kernel.radius());
-    return filters;
-}
 
 // XYZ of linear sRGB (primaries and white of IEC 61966-2-1), each over white's.
 glm::dmat3 rgb_to_relative_xyz() {
@@ -138,28 +51,23 @@ float color_distance(vec3 a, vec3 b) {
     return std::pow(std::abs(d.x) + std::sqrt(d.y * d.y + d.z * d.z), k_color_exponent);
 }
 
-// Rows are padded to whole lanes, so that inner loops have no rest.
-constexpr uint32_t k_lanes = 16;
-uint32_t to_lanes(uint32_t width) { return (width + k_lanes - 1) / k_lanes * k_lanes; }
-
 // Y, Cx and Cz without their scales and offset, which weights that add up to 1 hand through: Y / Yn, the paper's
 // (Y + 16) / 116; X / Xn - Y / Yn; Y / Yn - Z / Zn.
 struct Opponent {
-    uint32_t width, height, stride;
+    uint32_t width, height;
     std::vector<float> achromatic, red_green, blue_yellow;
 };
 
 Opponent to_opponent(const FloatPicture& picture, const Conversion& conversion) {
-    const uint32_t stride = to_lanes(picture.width);
-    const std::vector<float> plane(size_t(stride) * picture.height);
-    Opponent opponent{picture.width, picture.height, stride, plane, plane, plane};
+    const std::vector<float> plane(size_t(picture.width) * picture.height);
+    Opponent opponent{picture.width, picture.height, plane, plane, plane};
     parallel_for(picture.height, 16, [&](size_t first, size_t last) {
         for (size_t y = first; y < last; ++y)
             for (size_t x = 0; x < picture.width; ++x) {
-                const float* rgb = &picture.rgb[(y * picture.width + x) * 3];
+                const size_t i = y * picture.width + x;
+                const float* rgb = &picture.rgb[i * 3];
                 const vec3 xyz = conversion.to_xyz *
                                  vec3(clamp_to_unit(rgb[0]), clamp_to_unit(rgb[1]), clamp_to_unit(rgb[2]));
-                const size_t i = y * stride + x;
                 opponent.achromatic[i] = xyz.y;
                 opponent.red_green[i] = xyz.x - xyz.y;
                 opponent.blue_yellow[i] = xyz.y - xyz.z;
@@ -168,33 +76,36 @@ Opponent to_opponent(const FloatPicture& picture, const Conversion& conversion) 
     return opponent;
 }
 
-// out[0, stride) += sum of weights[k] rows[k]. Sums of `k_lanes` pixels stay in registers.
+// out[0, count) += sum of weights[k] row_of(k)[0, count). Four taps at a time: fewer passes over out, and a loop that
+// compilers make vectors of.
 template <class RowOf>
-void add_weighted(const Kernel& kernel, uint32_t stride, RowOf&& row_of, float* out) {
+void add_weighted(const FlipKernel& kernel, RowOf&& row_of, uint32_t count, float* out) {
     const size_t taps = kernel.weights.size();
-    for (uint32_t x = 0; x < stride; x += k_lanes) {
-        std::array<float, k_lanes> sum{};
-        for (size_t k = 0; k < taps; ++k) {
-            const float* in = row_of(k) + x;
-            const float weight = kernel.weights[k];
-            for (uint32_t lane = 0; lane < k_lanes; ++lane) sum[lane] += weight * in[lane];
+    for (size_t k = 0; k < taps; k += 4) {
+        std::array<const float*, 4> in;
+        std::array<float, 4> weight;
+        for (size_t i = 0; i < 4; ++i) {
+            in[i] = row_of(std::min(k + i, taps - 1));
+            weight[i] = k + i < taps ? kernel.weights[k + i] : 0.0f;
         }
-        for (uint32_t lane = 0; lane < k_lanes; ++lane) out[x + lane] += sum[lane];
+        for (uint32_t x = 0; x < count; ++x)
+            out[x] +=
+                (weight[0] * in[0][x] + weight[1] * in[1][x]) + (weight[2] * in[2][x] + weight[3] * in[3][x]);
     }
 }
 
 // One row of one picture, filtered.
 class RowFilter {
   public:
-    RowFilter(const Filters& filters, const Opponent& picture)
-        : filters_(filters), picture_(picture), column_(picture.stride + 2 * filters.pad) {}
+    RowFilter(const FlipFilters& filters, const Opponent& picture)
+        : filters_(filters), picture_(picture), column_(picture.width + 2 * filters.largest_radius) {}
 
     void run(uint32_t y) {
         filter_each(filters_.achromatic, picture_.achromatic, y, achromatic);
         filter_each(filters_.red_green, picture_.red_green, y, red_green);
         filter_each(filters_.blue_yellow, picture_.blue_yellow, y, blue_yellow);
         std::array<std::vector<float>*, 4> slopes{&edge_x_, &edge_y_, &point_x_, &point_y_};
-        for (std::vector<float>* slope : slopes) slope->assign(picture_.stride, 0.0f);
+        for (std::vector<float>* slope : slopes) slope->assign(picture_.width, 0.0f);
         filter_down(filters_.smooth, picture_.achromatic, y);
         filter_across(filters_.edge, edge_x_);
         filter_across(filters_.point, point_x_);
@@ -202,9 +113,9 @@ class RowFilter {
         filter_across(filters_.smooth, edge_y_);
         filter_down(filters_.point, picture_.achromatic, y);
         filter_across(filters_.smooth, point_y_);
-        edge.resize(picture_.stride);
-        point.resize(picture_.stride);
-        for (uint32_t x = 0; x < picture_.stride; ++x) {
+        edge.resize(picture_.width);
+        point.resize(picture_.width);
+        for (uint32_t x = 0; x < picture_.width; ++x) {
             edge[x] = std::sqrt(edge_x_[x] * edge_x_[x] + edge_y_[x] * edge_y_[x]);
             point[x] = std::sqrt(point_x_[x] * point_x_[x] + point_y_[x] * point_y_[x]);
         }
@@ -214,36 +125,33 @@ class RowFilter {
     std::vector<float> edge, point;                         // magnitudes
 
   private:
-    void filter_each(const std::vector<Kernel>& kernels, const std::vector<float>& plane, uint32_t y,
+    void filter_each(const std::vector<FlipKernel>& kernels, const std::vector<float>& plane, uint32_t y,
                      std::vector<float>& out) {
-        out.assign(picture_.stride, 0.0f);
-        for (const Kernel& kernel : kernels) {
+        out.assign(picture_.width, 0.0f);
+        for (const FlipKernel& kernel : kernels) {
             filter_down(kernel, plane, y);
             filter_across(kernel, out);
         }
     }
     // Into column_, with what lies beyond the borders: the nearest pixel.
-    void filter_down(const Kernel& kernel, const std::vector<float>& plane, uint32_t y) {
+    void filter_down(const FlipKernel& kernel, const std::vector<float>& plane, uint32_t y) {
         const int64_t top = int64_t(y) - kernel.radius(), last_row = int64_t(picture_.height) - 1;
         std::fill(column_.begin(), column_.end(), 0.0f);
-        float* first = column_.data() + filters_.pad;
-        add_weighted(
-            kernel, picture_.stride,
-            [&](size_t k) {
-                return plane.data() +
-                       size_t(std::clamp<int64_t>(top + int64_t(k), 0, last_row)) * picture_.stride;
-            },
-            first);
+        float* first = column_.data() + filters_.largest_radius;
+        auto row_of = [&](size_t k) {
+            return plane.data() + size_t(std::clamp<int64_t>(top + int64_t(k), 0, last_row)) * picture_.width;
+        };
+        add_weighted(kernel, row_of, picture_.width, first);
         std::fill(column_.data(), first, first[0]);
         std::fill(first + picture_.width, column_.data() + column_.size(), first[picture_.width - 1]);
     }
-    void filter_across(const Kernel& kernel, std::vector<float>& out) {
-        const float* first = column_.data() + filters_.pad - kernel.radius();
+    void filter_across(const FlipKernel& kernel, std::vector<float>& out) {
+        const float* first = column_.data() + filters_.largest_radius - kernel.radius();
         add_weighted(
-            kernel, picture_.stride, [&](size_t k) { return first + k; }, out.data());
+            kernel, [&](size_t k) { return first + k; }, picture_.width, out.data());
     }
 
-    const Filters& filters_;
+    const FlipFilters& filters_;
     const Opponent& picture_;
     std::vector<float> column_, edge_x_, edge_y_, point_x_, point_y_;
 };
@@ -275,7 +183,7 @@ Result<std::vector<float>> flip_map(const FloatPicture& a, const FloatPicture& b
         return fail(ErrorId::value_out_of_range, "", "",
                     std::to_string(pixels_per_degree) + " pixels a degree", "from 1 to 1000");
     const Conversion conversion;
-    const Filters filters = make_filters(double(pixels_per_degree));
+    const FlipFilters filters = make_flip_filters(double(pixels_per_degree));
     const Opponent opponent_a = to_opponent(a, conversion), opponent_b = to_opponent(b, conversion);
     const float largest = color_distance(hunt_lab(conversion.to_xyz * vec3(0.0f, 1.0f, 0.0f)),
                                          hunt_lab(conversion.to_xyz * vec3(0.0f, 0.0f, 1.0f)));

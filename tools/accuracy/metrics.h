@@ -1,6 +1,7 @@
 // How far one picture is from another. Pictures are in display light: linear, 1 is the brightest the screen can show,
-// that is, after exposure and tone curve and before sRGB encoding (display_light()); all of the same size, else
-// value_out_of_range. No metric is NaN for finite pictures.
+// that is, after exposure and tone curve and before sRGB encoding (display_light()); all of the same size and finite,
+// else value_out_of_range. No metric is NaN. Squares at the right and lower border are smaller; means over squares
+// weigh each by its pixels.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -13,7 +14,7 @@
 
 namespace coppice {
 
-// Radiance to display light, as draw/light.glsl's present() without the encoding.
+// Radiance to display light, as draw/light.glsl's present() without the encoding. Negative or not a number: 0.
 FloatPicture display_light(const FloatPicture& radiance, const Light& light);
 // What is shown on a page: display light, sRGB-encoded.
 Picture encode_srgb(const FloatPicture& display);
@@ -26,7 +27,8 @@ struct FrameErrors {
     // difference of the squares' means: noise of single pixels averages out, a crown too thin or a missing one does
     // not. Bias: of the whole picture, signed.
     double coverage = 0.0, coverage_bias = 0.0;
-    // Distance of the mean colours, likewise: length of the difference over root 3, so that grey differs by its value.
+    // Distance of the mean colours, likewise: length of the difference over root 3, so that grey differs by its value
+    // (a length: the bias has no sign here).
     double mean_color = 0.0, mean_color_bias = 0.0;
 };
 inline constexpr uint32_t k_block_px = 16;
@@ -35,7 +37,7 @@ struct MeasuredFrame {
     FloatPicture display;
     std::vector<float> coverage;  // a value a pixel, [0, 1]
 };
-// images: for RMSE and PSNR, which are OpenImageIO's.
+// images: for RMSE and PSNR, which are OpenImageIO's. A module without compare(): name_unknown.
 Result<FrameErrors> measure_errors(const MeasuredFrame& frame, const MeasuredFrame& reference,
                                    const ImagesInterface& images);
 

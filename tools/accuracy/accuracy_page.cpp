@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
+#include <string_view>
+#include <utility>
 #include <fmt/format.h>
 #include "tools/accuracy/accuracy_page_parts.h"
 #include "tools/accuracy/accuracy_page_style.h"
@@ -65,14 +69,11 @@ std::string error_cells(const PageInput& page, const MethodPoint& point, Truth t
     std::string html;
     for (const PageMetric& metric : k_page_metrics) {
         const double error = point.against(truth).*metric.field;
-        html += "<td>" + error_text(error);
+        html += "<td class=\"text\">" + error_text(error);
         if (page.full && point.method != page.record.full_method) {
             const double full = page.full->against(truth).*metric.field;
-            html +=
-                error <= full
-                    ? " <small class=\"good\" title=\"no larger than full geometry's\">\u2713</small>"
-                    : fmt::format(" <small class=\"bad\" title=\"as large as full geometry's\">{}</small>",
-                                  times_text(error / full));
+            html += error <= full ? " <small class=\"good\">\u2713</small>"
+                                  : fmt::format(" <small class=\"bad\">{}</small>", times_text(error / full));
         }
         html += "</td>";
     }
@@ -96,9 +97,9 @@ std::string budget_table(const PageInput& page, Truth truth) {
     if (page.means.empty()) return html;
     html +=
         "<div class=\"scroll\"><table class=\"numbers budgets\"><thead><tr><th class=\"text\">budget a "
-        "frame</th>"
-        "<th class=\"text\">use</th><th>time</th><th>quicker than<br>full geometry</th>";
-    for (const PageMetric& metric : k_page_metrics) html += fmt::format("<th>{}</th>", metric.name);
+        "frame</th><th class=\"text\">use</th><th>time</th><th>times<br>as quick</th>";
+    for (const PageMetric& metric : k_page_metrics)
+        html += fmt::format("<th class=\"text\">{}</th>", metric.name);
     html += "</tr></thead><tbody>\n";
     for (const Budget& budget : budgets)
         html += budget_row(page,
@@ -113,9 +114,7 @@ std::string budget_table(const PageInput& page, Truth truth) {
             equal = &point;
     const auto shown = point_at_default(page.record, page.means, page.default_method);
     const char* apart = "apart";
-    if (equal)
-        html +=
-            budget_row(page, "as near as full geometry, quickest", *equal, truth, std::exchange(apart, ""));
+    if (equal) html += budget_row(page, "quickest as near as full", *equal, truth, std::exchange(apart, ""));
     if (shown && page.default_method != page.record.full_method)
         html += budget_row(page, "the program's default", *shown, truth, std::exchange(apart, ""));
     if (page.full) html += budget_row(page, "full geometry", *page.full, truth, std::exchange(apart, ""));
@@ -126,8 +125,8 @@ std::string figures_table(const AccuracyRecord& record) {
     if (record.figures.empty()) return {};
     std::string html =
         "<h2>What it is to reach</h2>\n<table class=\"numbers\"><thead><tr><th "
-        "class=\"text\">figure</th><th>measured</th>"
-        "<th>to reach</th><th class=\"text\"></th></tr></thead><tbody>\n";
+        "class=\"text\">figure</th><th>measured</th><th>to reach</th><th "
+        "class=\"text\"></th></tr></thead><tbody>\n";
     auto value_text = [](double value, const std::string& unit) {
         return std::isfinite(value) ? escape_html(fmt::format("{:.4g} {}", value, unit))
                                     : std::string("\u2013");
@@ -183,13 +182,10 @@ std::string methods_table(const PageInput& page) {
     };
     std::string html =
         "<h2>The methods, and how they move</h2>\n<p class=\"soft\">Pop energy: how much of a picture "
-        "changes at once "
-        "because its level of detail does, motion apart (mean square of display light at each place's "
-        "largest step). "
-        "Shimmer: how much still plants flicker under a slow camera (RMS of display light from frame to "
-        "frame). Both "
-        "over a flight at the default setting; less is better.</p>\n<div class=\"scroll\"><table "
-        "class=\"numbers\"><thead><tr>";
+        "changes at once because its level of detail does, motion apart (mean square of display light "
+        "at each place's largest step). Shimmer: how much still plants flicker under a slow camera (RMS "
+        "of display light from frame to frame). Both over a flight at the default setting; less is "
+        "better.</p>\n<div class=\"scroll\"><table class=\"numbers\"><thead><tr>";
     for (const char* name : {"method", "what it does", "pop energy", "shimmer"})
         html += fmt::format("<th class=\"text\" scope=\"col\"><button>{}</button></th>", name);
     html += "</tr></thead><tbody>\n";
@@ -239,15 +235,12 @@ std::string sample_row(const PageInput& page, const MethodPoint& point, const st
 std::string samples_table(const PageInput& page) {
     const AccuracyRecord& record = page.record;
     std::string html =
-        "<h2>All figures</h2>\n<p class=\"soft\">Of the view chosen above; a click on a head sorts. Times "
-        "are medians, "
-        "counts are primitives drawn in a frame, geometry is what the method keeps in memory, lists are what "
-        "it "
-        "writes each frame. RMSE, coverage and colours are of display light, where 1 is the brightest the "
-        "screen can "
-        "show; a positive bias is too much plant or too light.</p>\n<div class=\"scroll\"><table "
-        "class=\"numbers "
-        "samples\"><thead><tr>";
+        "<h2>All figures</h2>\n<p class=\"soft\">Of the view chosen above; a click on a head sorts. "
+        "Times are medians, counts are primitives drawn in a frame, geometry is what the method keeps "
+        "in memory, lists are what it writes each frame. RMSE, coverage and colours are of display "
+        "light, where 1 is the brightest the screen can show. Coverage and mean colour are compared in "
+        "squares of 16 pixels, the biases over the whole picture; a positive coverage bias is too much "
+        "plant.</p>\n<div class=\"scroll\"><table class=\"numbers samples\"><thead><tr>";
     for (const char* name : {"method", "setting", "time<br>ms", "triangles", "lines", "points",
                              "geometry<br>MiB", "lists<br>MiB", "RMSE", "PSNR<br>dB", "FLIP", "coverage",
                              "coverage<br>bias", "mean<br>colour", "colour<br>bias"})
@@ -289,24 +282,26 @@ std::string facts_table(const AccuracyRecord& record) {
 std::string accuracy_page(const AccuracyRecord& record) {
     const PageInput page(record);
     const std::string name = escape_html(record.scene_name);
+    auto count = [](size_t number, const char* noun) {
+        return fmt::format("{} {}{}", number, noun, number == 1 ? "" : "s");
+    };
     std::string html = fmt::format(
         "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
-        "content=\"width=device-width,initial-scale=1\"><meta name=\"color-scheme\" content=\"light dark\">"
-        "<title>Time against error: {0} - Coppice</title><style>{1}{2}</style></head>\n<body "
-        "class=\"in-shadowed\"><main>\n<h1>{0}: which method at which budget</h1>\n<p class=\"soft\">{3} "
-        "methods drew "
-        "{4} view{5} at {6} x {7} pixels on {8}; each picture was compared with a ray-traced one of every "
-        "triangle at "
-        "{9} samples a pixel. All errors are 0 for the reference itself; smaller is better.</p>\n",
-        name, k_page_style, k_accuracy_style, record.methods.size(), record.views.size(),
-        record.views.size() == 1 ? "" : "s", record.width, record.height, escape_html(record.device),
-        record.reference_samples);
+        "content=\"width=device-width,initial-scale=1\"><meta name=\"color-scheme\" content=\"light "
+        "dark\"><title>Time against error: {0} - Coppice</title><style>{1}{2}</style></head>\n"
+        "<body class=\"in-shadowed\"><main>\n<h1>{0}: which method at which budget</h1>\n",
+        name, k_page_style, k_accuracy_style);
+    html += fmt::format(
+        "<p class=\"soft\">{} drew {} at {} x {} pixels on {}; each picture was compared with a "
+        "ray-traced one of every triangle at {} samples a pixel. All errors are 0 for the reference "
+        "itself; smaller is better.</p>\n",
+        count(record.methods.size(), "method"), count(record.views.size(), "view"), record.width,
+        record.height, escape_html(record.device), record.reference_samples);
     html += of_both_truths("div", [&](Truth truth) { return budget_table(page, truth); });
     html +=
         "<p class=\"soft\">Means over the views; best by FLIP. <span class=\"good\">\u2713</span>: no "
-        "further from "
-        "the reference than full geometry, every triangle at one sample a pixel; else how many times as "
-        "far.</p>\n";
+        "further from the reference than full geometry, every triangle at one sample a pixel; else how "
+        "many times as far.</p>\n";
     html += figures_table(record);
     html += choosers(record);
     html += curves_section(page);

@@ -1,6 +1,7 @@
 // The curves of the accuracy page: error over frame time, and over the frames a view rests.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <fmt/format.h>
 #include "tools/accuracy/accuracy_page_parts.h"
 #include "tools/coppice/page_text.h"
@@ -168,10 +169,9 @@ std::string resting_table(const RestingCurve& curve) {
     if (!curve.full || curve.entries.empty()) return {};
     const AccuracyRecord::Resting &first = curve.entries.front(), &last = curve.entries.back();
     std::string html = fmt::format(
-        "<div class=\"scroll\"><table class=\"numbers\"><thead><tr><th class=\"text\">mean of the views</th>"
-        "<th>{}</th><th>after {} frame{}</th><th>after {}</th><th>of full geometry's</th><th "
-        "class=\"text\">no larger "
-        "than full geometry's</th></tr></thead>",
+        "<div class=\"scroll\"><table class=\"numbers\"><thead><tr><th class=\"text\">mean of the "
+        "views</th><th>{}</th><th>after {} frame{}</th><th>after {}</th><th>of full geometry's</th><th "
+        "class=\"text\">no larger than full geometry's</th></tr></thead>",
         k_full_name, first.frames, first.frames == 1 ? "" : "s", last.frames);
     return html +
            of_both_truths(
@@ -206,13 +206,11 @@ std::string resting_table(const RestingCurve& curve) {
 std::string curves_section(const PageInput& page) {
     const AccuracyRecord& record = page.record;
     std::string html =
-        "<section><h2>Error over time</h2>\n<p class=\"soft\">Every line is a method from its finest setting "
-        "to its "
-        "coarsest. Further left is quicker, further down is nearer to the reference; both axes are "
-        "logarithmic. The "
-        "shaded corner is what to look for: quicker than every triangle at one sample a pixel, and no "
-        "further from "
-        "the reference. Rest the mouse on a point for its setting.</p>\n" +
+        "<section><h2>Error over time</h2>\n<p class=\"soft\">Every line is a method from its finest "
+        "setting to its coarsest. Further left is quicker, further down is nearer to the reference; "
+        "both axes are logarithmic. The shaded corner is what to look for: quicker than every triangle "
+        "at one sample a pixel, and no further from the reference. Rest the mouse on a point for its "
+        "setting.</p>\n" +
         legend(page);
     std::vector<MethodPoint> all;
     for (uint32_t view = 0; view < record.views.size(); ++view)
@@ -248,10 +246,9 @@ std::string resting_section(const PageInput& page) {
 
     const RestingCurve mean = resting_curve(record, views);
     std::string html =
-        "<section><h2>A view at rest</h2>\n<p class=\"soft\">While the camera stands still, frames add up to "
-        "one "
-        "picture, each from another place of the pixel: the error after n frames of the default "
-        "method.</p>\n" +
+        "<section><h2>A view at rest</h2>\n<p class=\"soft\">While the camera stands still, frames add "
+        "up to one picture, each from another place of the pixel: the error after n frames of the "
+        "default method.</p>\n" +
         resting_table(mean) + open_view("mean") + resting_plots(page, ranges, mean) + "</div>\n";
     if (record.views.size() > 1)
         for (uint32_t view = 0; view < record.views.size(); ++view)

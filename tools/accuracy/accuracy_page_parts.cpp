@@ -1,6 +1,5 @@
 #include "tools/accuracy/accuracy_page_parts.h"
 
-#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include "tools/coppice/page_text.h"

@@ -1,7 +1,6 @@
 // The pictures of the accuracy page: for each view the reference and what the methods make of it in the same time.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <fmt/format.h>
 #include "tools/accuracy/accuracy_page_parts.h"
 #include "tools/coppice/page_text.h"
@@ -10,9 +9,7 @@ namespace coppice {
 namespace {
 
 std::string picture(const AccuracyRecord& record, const std::string& file, const std::string& what) {
-    if (file.empty())
-        return fmt::format("<div class=\"none\" style=\"aspect-ratio:{}/{}\">{} not kept</div>",
-                           std::max(record.width, 1u), std::max(record.height, 1u), escape_html(what));
+    if (file.empty()) return fmt::format("<div class=\"none\">{}: not kept</div>", escape_html(what));
     return fmt::format(
         "<a href=\"{0}\"><img loading=\"lazy\" src=\"{0}\" width=\"{1}\" height=\"{2}\" alt=\"{3}\"></a>",
         escape_html(file), record.width, record.height, escape_html(what));
@@ -66,11 +63,9 @@ std::string pictures_section(const PageInput& page) {
     const AccuracyRecord& record = page.record;
     if (record.views.empty()) return {};
     std::string html =
-        "<h2>Pictures</h2>\n<p class=\"soft\">Under each picture its FLIP map: the brighter, the more the "
-        "eye notices "
-        "when the reference takes its place. The default method is at its default setting, the others at the "
-        "one "
-        "nearest to it in time. Click to enlarge.</p>\n";
+        "<h2>Pictures</h2>\n<p class=\"soft\">Under each picture its FLIP map: the brighter, the more "
+        "the eye notices when the reference takes its place. The default method is at its default "
+        "setting, the others at the one nearest to it in time. Click to enlarge.</p>\n";
     for (uint32_t view = 0; view < record.views.size(); ++view) {
         html += fmt::format(
             "<h3>{} <span class=\"soft\">plants cover {} % of it</span></h3>\n<div class=\"row main\">\n",

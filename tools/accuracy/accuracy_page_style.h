@@ -15,7 +15,7 @@ p { max-width:52em }
 .answer { font-size:20px; line-height:1.45; max-width:44em; margin:18px 0 }
 .answer b, .good { color:var(--good) } .bad { color:var(--bad) }
 small { font-size:13px } .numbers td { white-space:nowrap } .numbers td.text { white-space:normal }
-.budgets small.good, .budgets small.bad { display:inline-block; width:3.4em; text-align:left; padding-left:6px }
+.budgets td.text { white-space:nowrap } .scroll + .curves { margin-top:16px }
 .scroll { overflow-x:auto } .scroll table { min-width:760px }
 .numbers th { vertical-align:bottom; line-height:1.3 } .numbers td.text, .numbers th.text { text-align:left }
 .numbers td:first-child { color:var(--ink) } .budgets td b { font-weight:600 }
@@ -36,11 +36,11 @@ h3 { font-size:18px; margin:30px 0 6px } h3 .soft { font-weight:400; font-size:1
 path.grid { fill:none } .better { fill:var(--good); opacity:.09 } .reference { stroke:var(--ink); stroke-width:1.2; stroke-dasharray:7 4; fill:none }
 svg text.halo { fill:var(--ink); paint-order:stroke; stroke:var(--card); stroke-width:4px; stroke-linejoin:round }
 .series.off { display:none } .focusing .series:not(.focus) { opacity:.12 } .series path:last-child { cursor:default }
-.row { display:grid; gap:16px; margin-top:12px; grid-template-columns:repeat(auto-fill,minmax(min(100%,230px),1fr)) }
-.row.main { grid-template-columns:repeat(auto-fit,minmax(min(100%,320px),1fr)) }
+.row { display:grid; gap:16px; margin-top:12px; grid-template-columns:repeat(auto-fill,minmax(min(100%,210px),1fr)) }
+.row.main { grid-template-columns:repeat(auto-fill,minmax(min(100%,320px),1fr)) }
 .row img { height:auto; border-radius:8px; background:var(--code) } .row a + a img { margin-top:6px }
 .row figcaption { line-height:1.4 } .row figcaption b { color:var(--ink); font-weight:600 }
-.row .none { display:grid; place-items:center; border:1px dashed var(--line); border-radius:8px; color:var(--soft); font-size:14px }
+.row .none { padding:20px 12px; text-align:center; border:1px dashed var(--line); border-radius:8px; color:var(--soft); font-size:14px }
 .row .none + .none { margin-top:6px }
 th button { all:unset; cursor:pointer } th button:hover, th button:focus-visible { color:var(--leaf); text-decoration:underline }
 th[aria-sort=ascending] button::after { content:" \2191" } th[aria-sort=descending] button::after { content:" \2193" }

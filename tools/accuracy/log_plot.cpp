@@ -76,10 +76,14 @@ std::vector<double> log_ticks(const LogRange& range) {
     std::vector<double> ticks = ticks_of(range, k_usual);
     if (ticks.size() > k_most) return ticks_of(range, k_decade);
     if (ticks.size() < k_fewest) ticks = ticks_of(range, k_fine);
-    if (ticks.size() < k_fewest) {
-        std::vector<double> tenths;
-        for (int i = 10; i < 100; ++i) tenths.push_back(i / 10.0);
-        ticks = ticks_of(range, tenths);
+    // Over a small part of a decade logarithms are nearly straight, and so may the steps be: of at most a fifth of the
+    // range's power of ten, which gives three.
+    const double power = std::pow(10.0, std::floor(std::log10(range.high - range.low)));
+    for (double parts : {1.0, 2.0, 5.0}) {
+        if (ticks.size() >= k_fewest) break;
+        ticks.clear();
+        for (double n = std::ceil(range.low / power * parts); n * power / parts <= range.high; ++n)
+            ticks.push_back(n * power / parts);
     }
     return ticks;
 }
@@ -149,11 +153,14 @@ std::string log_plot(const std::vector<LogPlotSeries>& series, const LogPlotSett
                         one.style.css_class, one.style.color, line, line_attributes(one.style),
                         marker_attributes(one.style), markers);
     }
-    // Over the lines, above its own where there is room; at the right, as the slowest method is the reference.
-    if (with_reference)
-        svg += fmt::format("<text class=\"halo\" x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"end\">{}</text>\n",
-                           reference_x - 7, reference_y - frame.top > 18 ? reference_y - 6 : reference_y + 15,
-                           escape_html(settings.reference_name));
+    if (with_reference) {
+        // Over the lines, above its own where there is room; left of the time, as lines beyond it are few.
+        const bool room = reference_x - frame.left > 170;
+        svg += fmt::format("<text class=\"halo\" x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\">{}</text>\n",
+                           room ? reference_x - 7 : reference_x + 7,
+                           reference_y - frame.top > 18 ? reference_y - 6 : reference_y + 15,
+                           room ? "end" : "start", escape_html(settings.reference_name));
+    }
     return svg + "</svg>\n";
 }
 

@@ -130,7 +130,6 @@ TEST_F(MethodTest, VertexMergingDrawsFewerTrianglesFurtherAwayAndAtLowerQuality)
     auto triangles = [&](const Camera& camera, double quality) {
         auto drawn = method->frame(camera, k_focal_px, quality);
         EXPECT_TRUE(drawn);
-        EXPECT_EQ(drawn->settings.projection, ProjectionMode::printed);
         uint64_t count = 0;
         for (const PlantModel& plant : drawn->scene->scene.plant_models)
             count += drawn->scene->plants[plant.model].triangle_vertices.size() / 3;
@@ -143,6 +142,25 @@ TEST_F(MethodTest, VertexMergingDrawsFewerTrianglesFurtherAwayAndAtLowerQuality)
         EXPECT_LT(triangles({dvec3(0, 2, 500)}, quality), count) << quality;
         before = count;
     }
+}
+
+TEST_F(MethodTest, BillboardsDrawNearPlantsWholeAndFarOnesByPoints) {
+    auto method = make("crossed billboards");
+    auto drawn = method->frame({dvec3(0, 2, 0)}, k_focal_px, 1.0);
+    ASSERT_TRUE(drawn);
+    size_t whole = 0, points = 0;
+    for (const SceneTile& tile : drawn->scene->scene.tiles)
+        for (uint32_t row = tile.first_plant; row < tile.first_plant + tile.plant_count; ++row) {
+            const Plant& plant = drawn->scene->plants[drawn->scene->scene.plant_models[row].model];
+            const double distance_m =
+                -(tile.tile.origin_world.z + double(drawn->scene->scene.positions[row].z_tile));
+            (plant.points.empty() ? whole : points) += 1;
+            // A finest texel is 4.5 m / 128: one pixel at 600 pixels a metre and 21 m.
+            EXPECT_TRUE(plant.points.empty() || distance_m >= 16.0) << distance_m;
+            EXPECT_TRUE(!plant.points.empty() || distance_m <= 32.0) << distance_m;
+        }
+    EXPECT_GT(whole, 0u);
+    EXPECT_GT(points, 5u);
 }
 
 TEST_F(MethodTest, AMissingSourceIsSaid) {

@@ -8,6 +8,7 @@
 #include "runtime/core/jobs.h"
 #include "runtime/core/log.h"
 #include "runtime/core/progress.h"
+#include "tools/accuracy/crossed_billboards.h"
 #include "tools/accuracy/substitute_models.h"
 #include "tools/accuracy/vertex_merging.h"
 
@@ -167,8 +168,6 @@ class SubstituteMethod final : public AccuracyMethod {
         const SubstituteScenes::Choice choice = scenes_->choose(camera, focal_px, quality);
         FrameSettings settings;
         settings.sample_distance_px = float(quality);
-        // Half the area for any direction: what a stand-in's area_m2 is given for.
-        settings.projection = ProjectionMode::printed;
         return DrawnFrame{choice.scene, settings, choice.revision};
     }
 
@@ -185,6 +184,12 @@ std::vector<Substitute> substitutes() {
          {0.5, 1.0, 2.0, 4.0, 8.0, 16.0},
          1.0,
          &make_vertex_merging_ladder},
+        {"crossed billboards",
+         "Three textured planes crossing in the middle of each plant; near ones with all their triangles.",
+         "d' px",
+         {0.71, 1.0, 1.41, 2.0, 2.83, 4.0},
+         1.0,
+         &make_crossed_billboards_ladder},
     };
 }
 

@@ -124,7 +124,7 @@ std::string budget_table(const PageInput& page, Truth truth) {
 std::string figures_table(const AccuracyRecord& record) {
     if (record.figures.empty()) return {};
     std::string html =
-        "<h2>What it is to reach</h2>\n<table class=\"numbers\"><thead><tr><th "
+        "<h2>What it is to reach</h2>\n<div class=\"scroll\"><table class=\"numbers\"><thead><tr><th "
         "class=\"text\">figure</th><th>measured</th><th>to reach</th><th "
         "class=\"text\"></th></tr></thead><tbody>\n";
     auto value_text = [](double value, const std::string& unit) {
@@ -143,7 +143,7 @@ std::string figures_table(const AccuracyRecord& record) {
                           : fmt::format("<span class=\"badge {}\">{}</span>", good ? "good" : "bad",
                                         good ? "\u2713 holds" : "\u2717 not reached"));
     }
-    return html + "</tbody></table>\n";
+    return html + "</tbody></table></div>\n";
 }
 
 std::string choosers(const AccuracyRecord& record) {

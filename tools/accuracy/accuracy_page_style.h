@@ -47,7 +47,7 @@ th[aria-sort=ascending] button::after { content:" \2191" } th[aria-sort=descendi
 .samples { font-size:14px } .samples td, .samples th { padding:5px 9px }
 .bar { display:inline-block; height:9px; border-radius:2px; background:var(--c0); margin-right:8px; vertical-align:1px }
 @media (prefers-reduced-motion:no-preference) { html { scroll-behavior:smooth } .series { transition:opacity .12s } }
-@media print { .choose { position:static } }
+@media print, (max-width:700px) { .choose { position:static } }
 )";
 
 inline constexpr const char* k_accuracy_script = R"(

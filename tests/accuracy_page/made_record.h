@@ -17,8 +17,8 @@ inline AccuracySample make_sample(uint32_t method, uint32_t view, double quality
     return sample;
 }
 
-// Two views. Method 0: full geometry, 1000 ms, 0.10. Method 1: the default, 100 ms at 0.5 px with 0.08, 20 ms at 1 px
-// with 0.12; the finest was measured in one view only. Method 2: 18 ms, 0.12.
+// Two views. Method 0: full geometry, 1000 ms, 0.10. Method 1: the default, 100 ms at 0.5 px with 0.08, 20 ms
+// at 1 px with 0.12; the finest was measured in one view only. Method 2: 18 ms, 0.12.
 inline AccuracyRecord make_record() {
     AccuracyRecord record{};
     record.command = "coppice bench accuracy";

@@ -63,7 +63,8 @@ TEST(AccuracyPage, NeedsNothingFromTheNetwork) {
 
 TEST(AccuracyPage, ShowsPicturesNearestToTheDefaultInTime) {
     AccuracyRecord record = make_record();
-    // In view 0 the default takes 10 ms; of two settings of the points the one at 9 ms is nearer than the one at 90.
+    // In view 0 the default takes 10 ms; of two settings of the points the one at 9 ms is nearer than the one
+    // at 90.
     record.samples.push_back(make_sample(2, 0, 0.2, 90, 0.01));
     record.samples.back().picture_file = "slow.png";
     std::string page = accuracy_page(record);

@@ -1,4 +1,5 @@
-// The pictures of the accuracy page: for each view the reference and what the methods make of it in the same time.
+// The pictures of the accuracy page: for each view the reference and what the methods make of it in the same
+// time.
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>

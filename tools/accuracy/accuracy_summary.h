@@ -1,4 +1,5 @@
-// What a reader of an accuracy record asks first: averages over the views, and which method to use at a budget.
+// What a reader of an accuracy record asks first: averages over the views, and which method to use at a
+// budget.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -23,7 +24,8 @@ inline constexpr ErrorColumn k_error_columns[] = {{"rmse", &FrameErrors::rmse},
 
 enum class Truth { shadowed, unshadowed };  // the reference with shadows; the one lit as frames are
 
-// A method at one setting of its quality, in one view or averaged over all of them. Counts and bytes are of a frame.
+// A method at one setting of its quality, in one view or averaged over all of them. Counts and bytes are of a
+// frame.
 struct MethodPoint {
     uint32_t method;  // into AccuracyRecord::methods
     double quality;
@@ -38,11 +40,12 @@ struct MethodPoint {
 
 // Sorted by method, then as the record has them: that is the order of the sweep.
 std::vector<MethodPoint> view_points(const AccuracyRecord& record, uint32_t view);
-// Arithmetic means. Settings not measured in every view are left out: a mean over easier views would look better.
+// Arithmetic means. Settings not measured in every view are left out: a mean over easier views would look
+// better.
 std::vector<MethodPoint> mean_points(const AccuracyRecord& record);
 
-// The point of the least FLIP that takes at most budget_ms; of equal ones the quicker, then the first. Empty where
-// none is as quick.
+// The point of the least FLIP that takes at most budget_ms; of equal ones the quicker, then the first. Empty
+// where none is as quick.
 std::optional<MethodPoint> best_within(std::span<const MethodPoint> points, double budget_ms,
                                        Truth truth = Truth::shadowed);
 // Of the means.

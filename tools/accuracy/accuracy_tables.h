@@ -9,8 +9,8 @@ namespace coppice {
 // Numbers that are not finite, the PSNR of equal pictures among them, are null.
 nlohmann::json accuracy_json(const AccuracyRecord& record);
 
-// A line a sample under a line of names; texts in quotes where they need them (RFC 4180), decimal points whatever the
-// locale. Numbers that are not finite are empty.
+// A line a sample under a line of names; texts in quotes where they need them (RFC 4180), decimal points
+// whatever the locale. Numbers that are not finite are empty.
 std::string accuracy_csv(const AccuracyRecord& record);
 
 }  // namespace coppice

@@ -76,8 +76,8 @@ std::vector<double> log_ticks(const LogRange& range) {
     std::vector<double> ticks = ticks_of(range, k_usual);
     if (ticks.size() > k_most) return ticks_of(range, k_decade);
     if (ticks.size() < k_fewest) ticks = ticks_of(range, k_fine);
-    // Over a small part of a decade logarithms are nearly straight, and so may the steps be: of at most a fifth of the
-    // range's power of ten, which gives three.
+    // Over a small part of a decade logarithms are nearly straight, and so may the steps be: of at most a
+    // fifth of the range's power of ten, which gives three.
     const double power = std::pow(10.0, std::floor(std::log10(range.high - range.low)));
     for (double parts : {1.0, 2.0, 5.0}) {
         if (ticks.size() >= k_fewest) break;

@@ -13,8 +13,8 @@ struct LogRange {
 };
 // All that is positive and finite, with a margin; [0.1, 1] where nothing is.
 LogRange log_range(std::span<const double> values);
-// Rising, all in range: 1, 2 and 5 times powers of ten; powers alone where those are too many, finer steps where they
-// are fewer than three.
+// Rising, all in range: 1, 2 and 5 times powers of ten; powers alone where those are too many, finer steps
+// where they are fewer than three.
 std::vector<double> log_ticks(const LogRange& range);
 
 // Colours alone don't tell twelve lines apart, nor all readers: each line has a marker and a dash too.

@@ -3,13 +3,17 @@
 #include <algorithm>
 #include <numeric>
 #include <string>
+#include "plugins/vegetation/plant/description.h"
 #include "tools/reference/light.h"
 
 namespace coppice {
 namespace {
 
 constexpr size_t k_model_vertex_limit = size_t(1) << 30;  // Embree: 16 GiB a buffer
-constexpr float k_radiance_limit = 1e9f;                  // so that no sum over samples overflows
+// Far beyond what is meant; within them no product or sum overflows.
+constexpr float k_radiance_limit = 1e9f, k_place_limit_m = 1e9f, k_scale_limit = 1e6f;
+// Fixed, so that processors with wider vectors find the same; rays that go one by one gain nothing from those.
+constexpr const char* k_device = "max_isa=avx2";
 
 auto wrong(std::string place, std::string fault, std::string remedy) {
     return fail(ErrorId::value_out_of_range, "", std::move(place), std::move(fault), std::move(remedy));
@@ -28,40 +32,51 @@ Status check_device(RTCDevice device) {
     }
 }
 
-bool in_limits(vec3 color) {
-    return is_finite(color) &&
-           std::max({std::fabs(color.x), std::fabs(color.y), std::fabs(color.z)}) <= k_radiance_limit;
+bool within(vec3 v, float limit) {
+    return std::fabs(v.x) <= limit && std::fabs(v.y) <= limit && std::fabs(v.z) <= limit;  // false for NaN
 }
+bool within(dvec3 v, float limit) { return within(vec3(v), limit); }
 
 Status check_light(const Light& light) {
-    if (!is_finite(light.direction_to_sun)) return wrong("sun", "a direction that is not finite", "metres");
+    if (!is_finite(light.direction_to_sun))
+        return wrong("sun", "a direction that is not finite", "a vector towards it");
     for (vec3 color : {light.sun_color, light.sky_zenith_color, light.sky_horizon_color, light.ground_color,
                        light.haze_color})
-        if (!in_limits(color)) return wrong("light", "a radiance that is not finite or over 1e9", "about 1");
+        if (!within(color, k_radiance_limit))
+            return wrong("light", "a radiance that is not finite, or over 1e9", "around 1");
     if (!(light.haze_density_per_m >= 0.0f) || !std::isfinite(light.haze_density_per_m))
         return wrong("haze", std::to_string(light.haze_density_per_m) + " per metre", "0 or more");
     return {};
 }
 
-Status check_plants(const Scene& scene, size_t plant_count) {
-    if (plant_count != scene.models.size())
-        return wrong("plants", std::to_string(plant_count) + " packed plants",
+Status check_plants(const Scene& scene, std::span<const Plant> plants) {
+    if (plants.size() != scene.models.size())
+        return wrong("plants", std::to_string(plants.size()) + " packed plants",
                      "one for each of the scene's " + std::to_string(scene.models.size()) + " models");
+    for (const Plant& plant : plants)
+        for (const PackedVertex& v : plant.triangle_vertices)
+            if (!within(vec3(v.x_plant, v.y_plant, v.z_plant), k_position_limit_m))
+                return wrong(plant.name, "a vertex that is not finite, or too far",
+                             "at most 1e5 m from the foot");
     const size_t placed = scene.positions.size();
     if (scene.turns.size() != placed || scene.plant_models.size() != placed)
         return wrong("plants", "arrays of different length", "one position, turn and model a plant");
-    for (const SceneTile& tile : scene.tiles)
+    for (const SceneTile& tile : scene.tiles) {
         if (tile.first_plant > placed || tile.plant_count > placed - tile.first_plant)
             return wrong("tiles", "a tile of plants that do not exist", "ranges inside the arrays");
+        if (!within(tile.tile.origin_world, k_place_limit_m))
+            return wrong("tiles", "an origin that is not finite, or too far", "at most 1e9 m");
+    }
     for (size_t i = 0; i < placed; ++i) {
         const PlantPosition& p = scene.positions[i];
-        if (scene.plant_models[i].model >= plant_count)
+        if (scene.plant_models[i].model >= plants.size())
             return wrong("plants[" + std::to_string(i) + "]",
                          "model " + std::to_string(scene.plant_models[i].model),
-                         "the scene has " + std::to_string(plant_count) + " models");
-        if (!is_finite(vec3(p.x_tile, p.y_tile, p.z_tile)) || !(p.scale > 0.0f) || !std::isfinite(p.scale))
-            return wrong("plants[" + std::to_string(i) + "]", "a place or scale that is not finite",
-                         "metres, and a scale over 0");
+                         "the scene has " + std::to_string(plants.size()) + " models");
+        if (!within(vec3(p.x_tile, p.y_tile, p.z_tile), k_place_limit_m) ||
+            !(p.scale >= 1.0f / k_scale_limit && p.scale <= k_scale_limit))
+            return wrong("plants[" + std::to_string(i) + "]", "a place or scale that cannot be meant",
+                         "at most 1e9 m, and a scale from 1e-6 to 1e6");
     }
     return {};
 }
@@ -85,7 +100,7 @@ void attach(RTCScene scene, RTCGeometry geometry, uint32_t id) {
 
 Result<RayGeometry> RayGeometry::create(const Scene& scene, std::span<const Plant> plants,
                                         const Terrain* bare_terrain) {
-    COPPICE_CHECK(check_plants(scene, plants.size()));
+    COPPICE_CHECK(check_plants(scene, plants));
     COPPICE_CHECK(check_light(scene.light));
     if ((scene.terrain != nullptr) != (bare_terrain != nullptr))
         return wrong("terrain", scene.terrain ? "no bare one" : "a bare one of a scene without",
@@ -108,12 +123,16 @@ Result<RayGeometry> RayGeometry::create(const Scene& scene, std::span<const Plan
 Status RayGeometry::add_ground(const Terrain& drawn, const Terrain& bare) {
     if (drawn.vertices().size() != bare.vertices().size())
         return wrong("terrain", "a bare one of another size", "the same terrain before shade_ground");
+    if (!within(drawn.origin_world(), k_place_limit_m))
+        return wrong("terrain", "an origin that is not finite, or too far", "at most 1e9 m");
     RayModel ground;
     for (const TerrainPatch& patch : drawn.patches()) {
         if (patch.level_count == 0) continue;
         const TerrainLevel& level = drawn.levels()[patch.first_level];
         for (uint32_t v = level.first_vertex; v < level.first_vertex + level.vertex_count; ++v) {
             PackedVertex vertex = drawn.vertices()[v];
+            if (!within(vec3(vertex.x_plant, vertex.y_plant, vertex.z_plant), k_place_limit_m))
+                return wrong("terrain", "a vertex that is not finite, or too far", "at most 1e9 m");
             ground.drawn_surfaces.push_back(vertex.surface);
             vertex.surface = bare.vertices()[v].surface;
             ground.vertices.push_back(vertex);
@@ -125,7 +144,7 @@ Status RayGeometry::add_ground(const Terrain& drawn, const Terrain& bare) {
 }
 
 Status RayGeometry::plant_trees() {
-    device_.reset(rtcNewDevice(nullptr));
+    device_.reset(rtcNewDevice(k_device));
     COPPICE_CHECK(check_device(device_.get()));
     size_t most = 0;
     for (const RayModel& model : models_) most = std::max(most, model.vertices.size());
@@ -156,6 +175,8 @@ Status RayGeometry::plant_trees() {
 }
 
 Result<RayView> RayGeometry::view_from(dvec3 position_world) const {
+    if (!within(position_world, k_place_limit_m))
+        return wrong("camera", "a place that is not finite, or too far", "at most 1e9 m");
     RayView view;
     for (const SceneTile& tile : tiles_) {
         const vec3 origin(tile.tile.origin_world - position_world);

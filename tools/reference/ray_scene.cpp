@@ -53,10 +53,10 @@ Status check_plants(const Scene& scene, std::span<const Plant> plants) {
     if (plants.size() != scene.models.size())
         return wrong("plants", std::to_string(plants.size()) + " packed plants",
                      "one for each of the scene's " + std::to_string(scene.models.size()) + " models");
-    for (const Plant& plant : plants)
-        for (const PackedVertex& v : plant.triangle_vertices)
+    for (size_t i = 0; i < plants.size(); ++i)
+        for (const PackedVertex& v : plants[i].triangle_vertices)
             if (!within(vec3(v.x_plant, v.y_plant, v.z_plant), k_position_limit_m))
-                return wrong(plant.name, "a vertex that is not finite, or too far",
+                return wrong("models[" + std::to_string(i) + "]", "a vertex that is not finite, or too far",
                              "at most 1e5 m from the foot");
     const size_t placed = scene.positions.size();
     if (scene.turns.size() != placed || scene.plant_models.size() != placed)

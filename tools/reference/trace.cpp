@@ -1,3 +1,6 @@
+// Rays go one by one. Embree's packets of 16 are a quarter faster and find the same, but not on processors with narrower
+// vectors. Those it is told are coherent are faster yet, but find others where triangles touch, and rtcOccluded16 was
+// seen never to return (3.13.5).
 #include "tools/reference/trace.h"
 
 #include <algorithm>
@@ -65,8 +68,6 @@ Surface blend_surfaces(const std::array<uint32_t, 3>& words, const std::array<fl
     return mean;
 }
 
-// Rays go one by one. Embree's packets of 16 are a quarter faster and find the same; those it may take for coherent are
-// faster yet, but find others where triangles touch, and rtcOccluded16 was seen never to return (3.13.5).
 bool sees_sun(const Shot& shot, vec3 place, vec3 face, float distance_m) {
     const vec3 to_sun = shot.geometry.light().direction_to_sun;
     // From the sunny side of the surface: what is thin lets light through and must not shade itself.

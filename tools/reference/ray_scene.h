@@ -48,7 +48,8 @@ class RayGeometry {
     static Result<RayGeometry> create(const Scene& scene, std::span<const Plant> plants,
                                       const Terrain* bare_terrain);
 
-    // Same bytes on any number of threads. Refers to this geometry; 0.75 kB a plant while it lives. Errors: value_out_of_range, limit_exceeded.
+    // Same bytes on any number of threads. Refers to this geometry; 0.75 kB a plant while it lives.
+    // Errors: value_out_of_range, limit_exceeded.
     Result<RayView> view_from(dvec3 position_world) const;
 
     std::span<const RayModel> models() const { return models_; }

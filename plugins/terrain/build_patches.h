@@ -11,7 +11,7 @@ namespace coppice {
 inline constexpr uint32_t k_patch_cells = 32;
 // error_m is at least this share of a level's spacing, level 0 excepted: vertices carry the colour too, and
 // even flat ground must not lose it to a triangle of a hundred metres.
-inline constexpr float k_color_error_share = 1.0f / 16.0f;
+inline constexpr float k_color_error_share = 1.0f / 4.0f;
 
 struct TerrainMesh {
     std::vector<TerrainPatch> patches;

@@ -95,7 +95,6 @@ class VegetationSystems final : public Vegetation {
     void set_slot(uint32_t slot) override { slot_ = slot; }
     const gpu::Buffer& color() const override { return rasteriser_->color(); }
     ResourceIndex color_resource() const override { return rasteriser_->color_resource(); }
-    const gpu::Buffer& radiance() const override { return rasteriser_->radiance(); }
     const gpu::Buffer& visibility() const override { return rasteriser_->visibility(); }
     const FrameReport& report() const override { return report_; }
 
@@ -199,8 +198,9 @@ class VegetationSystems final : public Vegetation {
             }
         }
         layout_ = work_.gather(rasteriser_->instances(slot_), rasteriser_->entries(slot_));
-        rasteriser_->set_frame(slot_, layout_, camera_, light_,
-                               {drawn_.view, resting_.shift_px, keep_ ? resting_.new_share : 0.0f});
+        rasteriser_->set_frame(
+            slot_, layout_, camera_, light_,
+            {drawn_.view, resting_.shift_px, keep_ ? resting_.new_share : 0.0f, resting_.filter_radius_px});
         report_.write_ms = now_ms() - begin;
     }
 

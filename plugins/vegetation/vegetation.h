@@ -54,9 +54,6 @@ class Vegetation {
     // RGBA8, sRGB-encoded, width * height, rows from the top; written by the pass "resolve".
     virtual const gpu::Buffer& color() const = 0;
     virtual ResourceIndex color_resource() const = 0;
-    // Where FrameSettings::accumulate_limit is over 0: linear radiance, three floats a pixel, before exposure and tone
-    // curve, the mean of the frames since something moved.
-    virtual const gpu::Buffer& radiance() const = 0;
     // Depth and surface words of the last frame, for tests: width * height 64-bit words (DESIGN 4).
     virtual const gpu::Buffer& visibility() const = 0;
     // Counts of the frame whose schedule ran last.

@@ -107,7 +107,7 @@ TEST(LoadTerrain, LevelErrorsHoldAndAreReached) {
                     }
             }
             float spacing = 200.0f / 128.0f * float(1 << l);
-            EXPECT_NEAR(level.error_m, std::max(worst, spacing / 16.0f), 2e-3f) << "level " << l;
+            EXPECT_NEAR(level.error_m, std::max(worst, spacing / 4.0f), 2e-3f) << "level " << l;
             EXPECT_GE(level.error_m, terrain->levels()[patch.first_level + l - 1].error_m * 0.3f);
         }
     }

@@ -1,5 +1,6 @@
-// From radiance to what a screen shows: metrics.h's display_light() and encode_srgb().
+// From radiance to what a screen shows: metrics.h's display_light(); sRGB and back.
 #include <algorithm>
+#include <array>
 #include "plugins/vegetation/components.h"
 #include "runtime/core/jobs.h"
 #include "runtime/core/math.h"
@@ -38,6 +39,14 @@ Picture encode_srgb(const FloatPicture& display) {
                 picture.rgba[i * 4 + c] = uint8_t(linear_to_srgb(display.rgb[i * 3 + c]) * 255.0f + 0.5f);
     });
     return picture;
+}
+
+FloatPicture decode_srgb(const Picture& picture) {
+    std::array<float, 256> linear;
+    for (size_t i = 0; i < linear.size(); ++i) linear[i] = srgb_to_linear(float(i) / 255.0f);
+    FloatPicture display{picture.width, picture.height, std::vector<float>(picture.rgba.size() / 4 * 3)};
+    for (size_t i = 0; i < display.rgb.size(); ++i) display.rgb[i] = linear[picture.rgba[i / 3 * 4 + i % 3]];
+    return display;
 }
 
 }  // namespace coppice

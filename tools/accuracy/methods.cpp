@@ -21,13 +21,16 @@ std::vector<double> sample_distances_px() { return {0.5, 0.71, 1.0, 1.41, 2.0, 2
 
 class FullMethod final : public AccuracyMethod {
   public:
-    explicit FullMethod(uint32_t samples) : samples_(samples) {}
+    FullMethod(uint32_t samples, float filter_radius_px)
+        : samples_(samples), filter_radius_px_(filter_radius_px) {}
     std::string name() const override {
+        if (filter_radius_px_ > 1.0f) return "full, filtered";
         return samples_ == 1 ? "full, 1 sample" : "full, " + std::to_string(samples_) + " samples";
     }
     std::string what() const override {
         return "Every triangle, " +
-               (samples_ == 1 ? "one sample a pixel." : std::to_string(samples_) + " samples a pixel.");
+               (samples_ == 1 ? "one sample a pixel" : std::to_string(samples_) + " samples a pixel") +
+               (filter_radius_px_ > 1.0f ? ", under the pixel filter of the defaults." : ".");
     }
     std::string quality_name() const override { return ""; }
     std::vector<double> qualities() const override { return {1.0}; }
@@ -40,11 +43,13 @@ class FullMethod final : public AccuracyMethod {
     Result<DrawnFrame> frame(const Camera&, float, double) override {
         FrameSettings settings;
         settings.level_of_detail = false;
+        settings.filter_radius_px = filter_radius_px_;
         return DrawnFrame{original_, settings};
     }
 
   private:
     uint32_t samples_;
+    float filter_radius_px_;
     const MethodScene* original_ = nullptr;
 };
 
@@ -101,8 +106,11 @@ std::vector<Hybrid> hybrids() {
     FrameSettings isotropic;
     isotropic.projection = ProjectionMode::isotropic;
     isotropic.splat_factor = k_paper_splat_factor;
+    isotropic.filter_radius_px = 1.0f;  // the paper has none
     FrameSettings printed = isotropic;
     printed.projection = ProjectionMode::printed;
+    FrameSettings unfiltered;
+    unfiltered.filter_radius_px = 1.0f;
     FrameSettings unblended;
     unblended.blend = false;
     CookSettings shuffled;
@@ -116,6 +124,8 @@ std::vector<Hybrid> hybrids() {
          "The paper's hybrid with pi/4 of the lines' length for any direction, splat factor 1.3.", isotropic,
          std::nullopt},
         {"hybrid, printed", "The paper's hybrid, its formulas as printed, splat factor 1.3.", printed,
+         std::nullopt},
+        {"hybrid, unfiltered", "The defaults, but each pixel shows its own sample alone.", unfiltered,
          std::nullopt},
         {"hybrid, unblended", "The defaults, but points give way to triangles at once.", unblended,
          std::nullopt},
@@ -197,7 +207,10 @@ std::vector<Substitute> substitutes() {
 
 std::vector<std::unique_ptr<AccuracyMethod>> make_accuracy_methods() {
     std::vector<std::unique_ptr<AccuracyMethod>> methods;
-    for (uint32_t samples : {1u, 4u}) methods.push_back(std::make_unique<FullMethod>(samples));
+    const float filtered_px = FrameSettings{}.filter_radius_px;
+    methods.push_back(std::make_unique<FullMethod>(1, 1.0f));
+    methods.push_back(std::make_unique<FullMethod>(4, 1.0f));
+    methods.push_back(std::make_unique<FullMethod>(1, filtered_px));
     for (Hybrid& hybrid : hybrids()) methods.push_back(std::make_unique<HybridMethod>(std::move(hybrid)));
     for (Substitute& substitute : substitutes())
         methods.push_back(std::make_unique<SubstituteMethod>(std::move(substitute)));

@@ -18,6 +18,7 @@ namespace coppice {
 FloatPicture display_light(const FloatPicture& radiance, const Light& light);
 // What is shown on a page: display light, sRGB-encoded.
 Picture encode_srgb(const FloatPicture& display);
+FloatPicture decode_srgb(const Picture& picture);
 
 struct FrameErrors {
     double rmse = 0.0;     // root of the mean square over pixels and channels

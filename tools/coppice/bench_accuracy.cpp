@@ -209,8 +209,11 @@ class AccuracyBench {
             COPPICE_TRY(const ReferencePicture traced, cache.find_or_trace(views_[view], settings));
             record_.reference_samples = traced.samples_per_pixel;
             Truths truths;
-            truths.shadowed.display = display_light(traced.shadowed, original_.scene.light);
-            truths.unshadowed.display = display_light(traced.unshadowed, original_.scene.light);
+            // Frames come in 8 bits: what they cannot hold must not count as their error.
+            const Picture shadowed = encode_srgb(display_light(traced.shadowed, original_.scene.light));
+            const Picture unshadowed = encode_srgb(display_light(traced.unshadowed, original_.scene.light));
+            truths.shadowed.display = decode_srgb(shadowed);
+            truths.unshadowed.display = decode_srgb(unshadowed);
             double sum = 0.0;
             for (size_t i = 0; i < traced.coverage.rgb.size(); i += 3) {
                 truths.shadowed.coverage.push_back(traced.coverage.rgb[i]);
@@ -219,10 +222,9 @@ class AccuracyBench {
             truths.unshadowed.coverage = truths.shadowed.coverage;
             record_.views[view].plant_coverage = sum / double(truths.shadowed.coverage.size());
             record_.views[view].reference_file = fmt::format("view{}-reference.png", view + 1);
-            COPPICE_CHECK(images_->write(settings_.out + "/" + record_.views[view].reference_file,
-                                         encode_srgb(truths.shadowed.display)));
-            COPPICE_CHECK(images_->write(fmt::format("{}/view{}-unshadowed.png", settings_.out, view + 1),
-                                         encode_srgb(truths.unshadowed.display)));
+            COPPICE_CHECK(images_->write(settings_.out + "/" + record_.views[view].reference_file, shadowed));
+            COPPICE_CHECK(
+                images_->write(fmt::format("{}/view{}-unshadowed.png", settings_.out, view + 1), unshadowed));
             truths_.push_back(std::move(truths));
         }
         return {};

@@ -74,17 +74,13 @@ Result<FloatPicture> MethodDrawer::draw(FrameSettings settings, const Camera& ca
         }
         if (whole) break;
     }
-    FloatPicture picture{host_.width, host_.height,
-                         std::vector<float>(size_t(host_.width) * host_.height * 3)};
-    COPPICE_CHECK(gpu::read_now(*host_.device, host_.vegetation->radiance(), 0,
-                                std::as_writable_bytes(std::span(picture.rgb))));
-    return picture;
+    COPPICE_TRY(const Picture shown, host_.read_picture());
+    return decode_srgb(shown);
 }
 
 Result<FloatPicture> MethodDrawer::picture(const DrawnFrame& drawn, const Camera& camera, uint32_t frames) {
     COPPICE_CHECK(show(drawn));
-    COPPICE_TRY(const FloatPicture radiance, draw(drawn.settings, camera, frames));
-    return display_light(radiance, drawn.scene->scene.light);
+    return draw(drawn.settings, camera, frames);
 }
 
 Result<MeasuredFrame> MethodDrawer::measure(const DrawnFrame& drawn, const Camera& camera, uint32_t frames) {

@@ -14,6 +14,7 @@ Frustum make_frustum(const Camera& camera, uint32_t width_px, uint32_t height_px
     float tangent_y = portable_sin(half) / portable_cos(half);
     float tangent_x = tangent_y * float(std::max(width_px, 1u)) / float(std::max(height_px, 1u));
     frustum.focal_px = float(std::max(height_px, 1u)) / (2.0f * tangent_y);
+    frustum.corner_cos = 1.0f / std::sqrt(1.0f + tangent_x * tangent_x + tangent_y * tangent_y);
     auto side = [](vec3 axis, vec3 forward, float tangent) {
         return normalize_or(axis + forward * tangent, forward);  // dot(n, x axis_part + forward) >= 0 inside
     };

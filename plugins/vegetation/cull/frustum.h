@@ -1,6 +1,7 @@
 // What the camera can see, as planes through the viewer. All coordinates are camera-relative: the viewer is the
 // origin, the axes are the world's.
 #pragma once
+#include <cmath>
 #include "plugins/vegetation/components.h"
 
 namespace coppice {
@@ -9,7 +10,8 @@ struct Frustum {
     vec3 right, up, forward;  // the camera's axes, unit
     vec3 side_normals[4];  // left, right, bottom, top; unit, pointing inside; all planes contain the origin
     float near_m;
-    float focal_px;  // image height / (2 tan(fov / 2))
+    float focal_px;    // image height / (2 tan(fov / 2))
+    float corner_cos;  // of the angle between the axis and the image's corners
 };
 
 Frustum make_frustum(const Camera& camera, uint32_t width_px, uint32_t height_px);
@@ -20,6 +22,14 @@ inline bool sees_sphere(const Frustum& frustum, vec3 center, float radius) {
     for (const vec3& normal : frustum.side_normals)
         if (glm::dot(normal, center) < -radius) return false;
     return true;
+}
+
+// A flat image shows a solid angle as cos^-3 of its angle to the axis times its area at the axis: the square root of
+// that, so that lengths scale by it. 1 to corner_cos^(-3/2), also for what lies outside the image.
+inline float off_axis_stretch(const Frustum& frustum, vec3 center, float distance_m) {
+    float along_m = glm::dot(frustum.forward, center);
+    float cosine = along_m > frustum.corner_cos * distance_m ? along_m / distance_m : frustum.corner_cos;
+    return distance_m > 0.0f ? 1.0f / (cosine * std::sqrt(cosine)) : 1.0f;
 }
 
 enum class Visibility { outside, across, inside };

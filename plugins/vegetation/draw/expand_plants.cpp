@@ -35,7 +35,8 @@ ExpandCounts expand_plants(const PlantRun& run, const SceneGeometry& geometry, c
         float distance_m = glm::length(center);
         PlantView view;
         view.pixels_per_meter = pixels_per_meter(frustum.focal_px, distance_m, model.radius_m * place.scale,
-                                                 frustum.near_m, place.scale);
+                                                 frustum.near_m, place.scale) *
+                                off_axis_stretch(frustum, center, distance_m);
         view.direction_plant =
             distance_m > 0.0f ? (center * (1.0f / distance_m)) * rotation : vec3(0.0f, 0.0f, -1.0f);
         uint32_t instance = UINT32_MAX;

@@ -64,6 +64,7 @@ Entry load_entry(uint index) {
 struct Transform {
     vec4 to_x, to_y, to_w;
     vec3 turn_x, turn_y, turn_z;
+    vec3 place;  // of the plant's origin
     bool ground;
 };
 
@@ -78,6 +79,7 @@ Transform load_transform(uint instance, bool ground) {
     t.turn_x = x.xyz;
     t.turn_y = y.xyz;
     t.turn_z = z.xyz;
+    t.place = vec3(x.w, y.w, z.w);
     t.ground = ground;
     return t;
 }
@@ -91,10 +93,14 @@ vec3 project(Transform t, vec3 position) {
 
 const uint k_kind_point = 0u, k_kind_line = 1u, k_kind_triangle = 2u;
 
+vec3 turn_direction(Transform t, vec3 direction) {
+    return vec3(dot(t.turn_x, direction), dot(t.turn_y, direction), dot(t.turn_z, direction));
+}
+
 // Turns a surface word from plant space into world space.
 uint turn_surface(Transform t, uint surface, uint kind) {
     vec3 n = decode_normal(surface);
-    uint turned = encode_normal(vec3(dot(t.turn_x, n), dot(t.turn_y, n), dot(t.turn_z, n)));
+    uint turned = encode_normal(turn_direction(t, n));
     uint kind_color = kind == k_kind_point ? 0x0000f000u | 0x0001f000u : kind == k_kind_line ? 0x0f800000u : 0x007e0000u;
     uint plant_color = t.ground ? 0u : k_color_bits;
     uint color = frame.view == k_view_lit ? surface & k_color_bits : frame.view == k_view_kinds ? kind_color : plant_color;

@@ -2,8 +2,48 @@
 // Lines of one instance and part, two vertices each; the second carries the line's own width over the part's mean.
 // A line is a parallelogram cut along its steeper axis: at each step it covers the pixels whose centres lie within
 // half its slanted width, so that it covers length * width in the mean at any direction and any width.
+// Its pixels do not all show one normal: a stem shows those of the half of its surface that faces the viewer, and a
+// leaf that stands for several shows normals turned about its axis in a share of its pixels.
 #extension GL_GOOGLE_include_directive : require
 #include "plugins/vegetation/draw/raster.glsl"
+
+// One of four normals, for a pixel: the line's own, or others about its axis.
+struct LineNormals {
+    uvec4 choice;
+    float share;  // of pixels that do not show choice[0] only because it is the line's own
+};
+
+LineNormals line_normals(Transform t, vec3 along_plant, vec3 middle_plant, uint surface, float share) {
+    vec3 along = turn_direction(t, along_plant);
+    along *= inversesqrt(max(dot(along, along), 1.0e-30));
+    vec3 own = turn_direction(t, decode_normal(surface));
+    own *= inversesqrt(max(dot(own, own), 1.0e-30));
+    vec3 beside = cross(along, own);
+    if ((surface & k_leaf_bit) != 0u) {
+        vec3 half_way = own + beside, back = beside - own;  // both sides of a leaf can be seen: half a turn is enough
+        return LineNormals(uvec4(encode_normal(own), encode_normal(half_way), encode_normal(beside), encode_normal(back)),
+                           share);
+    }
+    // Places evenly spread over the visible width of a cylinder.
+    vec3 to_viewer = -(t.place + turn_direction(t, middle_plant));
+    vec3 front = to_viewer - along * dot(to_viewer, along);
+    float front_length = length(front);
+    front = front_length > 0.0 ? front / front_length : own;
+    beside = cross(along, front);
+    return LineNormals(uvec4(encode_normal(0.968 * front + 0.25 * beside), encode_normal(0.968 * front - 0.25 * beside),
+                             encode_normal(0.661 * front + 0.75 * beside), encode_normal(0.661 * front - 0.75 * beside)),
+                       1.0);
+}
+
+uint pick_normal(LineNormals normals, ivec2 pixel, uint line) {
+    uint hash = uint(pixel.x) * 0x8da6b343u ^ uint(pixel.y) * 0xd8163841u ^ line * 0xcb1ab31fu;
+    hash = (hash ^ hash >> 15) * 0x2c1b3c6du;
+    hash ^= hash >> 13;
+    uint quarter = hash & 3u;
+    uint other = quarter == 0u ? normals.choice.x : quarter == 1u ? normals.choice.y
+                 : quarter == 2u ? normals.choice.z : normals.choice.w;
+    return float(hash >> 8) * (1.0 / 16777216.0) < normals.share ? other : normals.choice.x;
+}
 
 void main() {
     uint index, first_item, step;
@@ -37,7 +77,8 @@ void main() {
         float slope = span > 0.0 ? (b.y - a.y) / span : 0.0;
         float depth_slope = span > 0.0 ? (depths.y - depths.x) / span : 0.0;
         float width = min(entry.size_px * uintBitsToFloat(v1.w) * sqrt(1.0 + slope * slope), 64.0);
-        uint surface = turn_surface(t, v0.w, k_kind_line);
+        uint surface = turn_surface(t, v0.w, k_kind_line) & ~k_normal_bits;
+        LineNormals normals = line_normals(t, p1.xyz - p0.xyz, p0.xyz, v0.w, uintBitsToFloat(entry.owner_min));
 
         float first = max(ceil(a.x - 0.5), 0.0), last = min(ceil(b.x - 0.5), limit.x);
         for (float column = first; column < last; column += 1.0) {
@@ -47,7 +88,7 @@ void main() {
             float row_first = max(ceil(low), 0.0), row_last = min(ceil(low + width), limit.y);
             for (float row = row_first; row < row_last; row += 1.0) {
                 ivec2 pixel = ivec2(column, row);
-                write_pixel(steep ? pixel.yx : pixel, depth, surface);
+                write_pixel(steep ? pixel.yx : pixel, depth, surface | pick_normal(normals, pixel, i));
             }
         }
     }

@@ -4,6 +4,7 @@
 #include <cstring>
 #include "plugins/vegetation/cull/frustum.h"
 #include "runtime/core/log.h"
+#include "shaders/accumulate.comp.h"
 #include "shaders/raster_big_triangles.comp.h"
 #include "shaders/raster_lines.comp.h"
 #include "shaders/raster_triangles.comp.h"
@@ -16,7 +17,9 @@ namespace {
 constexpr uint32_t k_first_big_triangles = 1u << 18;
 constexpr uint32_t k_first_instances = 1u << 14, k_first_entries = 1u << 16;
 constexpr uint64_t k_pixel_radiance_bytes = 12;
-constexpr uint32_t k_pixels_a_group = 256;  // resolve.comp's k_run
+constexpr uint32_t k_pixels_a_group = 256;  // accumulate.comp's k_run
+// Of resolve.comp. A CPU wants few borders of blocks, a GPU many blocks.
+constexpr uint32_t k_cpu_columns = 4, k_cpu_rows = 64, k_gpu_columns = 1, k_gpu_rows = 16;
 
 struct LightBlock {
     vec4 to_sun, sun_color, zenith_color, horizon_color, ground_color, haze_color;
@@ -122,10 +125,14 @@ Status Rasteriser::make_pipelines() {
     }
     COPPICE_TRY(big_pipeline_, make("big triangles", k_raster_big_triangles_spirv, k_triangles,
                                     sizeof(RasterConstants), {lanes}));
-    COPPICE_TRY(resolve_pipeline_,
-                make("resolve", k_resolve_spirv, k_resolve, sizeof(ResolveConstants), {lanes, 0}));
-    COPPICE_TRY(resolve_keep_pipeline_,
-                make("resolve, kept", k_resolve_spirv, k_resolve, sizeof(ResolveConstants), {lanes, 1}));
+    const bool is_cpu = device_.limits.is_cpu;
+    const uint32_t columns = is_cpu ? k_cpu_columns : k_gpu_columns, rows = is_cpu ? k_cpu_rows : k_gpu_rows;
+    COPPICE_TRY(resolve_pipeline_, make("resolve", k_resolve_spirv, k_resolve, sizeof(ResolveConstants),
+                                        {lanes, 0, columns, rows}));
+    COPPICE_TRY(resolve_mean_pipeline_, make("resolve of the mean", k_resolve_spirv, k_resolve,
+                                             sizeof(ResolveConstants), {lanes, 1, columns, rows}));
+    COPPICE_TRY(accumulate_pipeline_, make("accumulate", k_accumulate_spirv, std::span(k_resolve).first(3),
+                                           sizeof(ResolveConstants), {lanes}));
     return {};
 }
 
@@ -272,19 +279,39 @@ void Rasteriser::add_passes() {
     add_draw("points large", WorkKind::points_any, {{visibility_resource_, BufferAccess::compute_atomic}});
     add_draw("points blended", WorkKind::points_blend,
              {{visibility_resource_, BufferAccess::compute_atomic}});
-    resolve_pass_ = graph_.add_pass(
-        "resolve",
+    auto lit = [this] {
+        return std::array<const gpu::Buffer*, 4>{&visibility_, &slots_[slot_].light, &radiance_, &color_};
+    };
+    accumulate_pass_ = graph_.add_pass(
+        "accumulate",
         {{visibility_resource_, BufferAccess::compute_read},
-         {color_resource_, BufferAccess::compute_write},
-         {radiance_resource_, BufferAccess::compute_read_write},
-         {big_count_resource_, BufferAccess::host_read}},
-        [this](VkCommandBuffer commands) {
-            const gpu::Buffer* buffers[] = {&visibility_, &color_, &slots_[slot_].light, &radiance_};
-            const gpu::Pipeline& pipeline =
-                resolve_.new_share > 0.0f ? resolve_keep_pipeline_ : resolve_pipeline_;
-            pipeline.bind(commands, buffers, &resolve_, sizeof resolve_);
-            pipeline.dispatch(commands, ((width_ - 1) / k_pixels_a_group + 1) * height_);
+         {radiance_resource_, BufferAccess::compute_read_write}},
+        [this, lit](VkCommandBuffer commands) {
+            const auto buffers = lit();
+            accumulate_pipeline_.bind(commands, std::span(buffers).first(3), &resolve_, sizeof resolve_);
+            accumulate_pipeline_.dispatch(commands, ((width_ - 1) / k_pixels_a_group + 1) * height_);
         });
+    resolve_pass_ = graph_.add_pass("resolve",
+                                    {{visibility_resource_, BufferAccess::compute_read},
+                                     {radiance_resource_, BufferAccess::compute_read},
+                                     {color_resource_, BufferAccess::compute_write},
+                                     {big_count_resource_, BufferAccess::host_read}},
+                                    [this, lit](VkCommandBuffer commands) {
+                                        const auto buffers = lit();
+                                        const gpu::Pipeline& pipeline = resolve_.new_share > 0.0f
+                                                                            ? resolve_mean_pipeline_
+                                                                            : resolve_pipeline_;
+                                        pipeline.bind(commands, buffers, &resolve_, sizeof resolve_);
+                                        pipeline.dispatch(commands, resolve_groups());
+                                    });
+}
+
+// One for each block; where subgroups are wider than a group is here, some find nothing to do.
+uint32_t Rasteriser::resolve_groups() const {
+    const bool is_cpu = device_.limits.is_cpu;
+    const uint32_t columns = device_.limits.group_size * (is_cpu ? k_cpu_columns : k_gpu_columns);
+    const uint32_t rows = is_cpu ? k_cpu_rows : k_gpu_rows;
+    return (width_ / (columns - 2) + 1) * (height_ / rows + 1);
 }
 
 void Rasteriser::set_frame(uint32_t slot, const WorkList::Layout& layout, const Camera& camera,
@@ -303,6 +330,9 @@ void Rasteriser::set_frame(uint32_t slot, const WorkList::Layout& layout, const 
     raster_.view = resolve_.view = uint32_t(picture.view);
     resolve_.new_share = picture.new_share;
     resolve_.shift_px = picture.shift_px;
+    // A tent of radius R weighs a neighbour at distance 1 with 1 - 1 / R.
+    resolve_.side_weight = 1.0f - 1.0f / glm::clamp(picture.filter_radius_px, 1.0f, 2.0f);
+    graph_.set_active(accumulate_pass_, picture.new_share > 0.0f);
     raster_.big_triangle_limit = big_limit_;
     resolve_.right = vec4(frustum.right * (1.0f / frustum.focal_px), float(width_));
     resolve_.up = vec4(frustum.up * (1.0f / frustum.focal_px), float(height_));
@@ -327,7 +357,7 @@ void Rasteriser::set_frame(uint32_t slot, const WorkList::Layout& layout, const 
 
 void Rasteriser::skip_frame() {
     for (uint32_t pass : draw_passes_) graph_.set_active(pass, false);
-    for (uint32_t pass : {clear_pass_, big_pass_, big_count_pass_, resolve_pass_})
+    for (uint32_t pass : {clear_pass_, big_pass_, big_count_pass_, accumulate_pass_, resolve_pass_})
         graph_.set_active(pass, false);
 }
 

@@ -21,8 +21,10 @@ struct GeometryData {
 struct PictureSettings {
     RepresentationView view = RepresentationView::lit;
     vec2 shift_px{0.0f};  // where in the pixel it is sampled, from its centre: right and down
-    // Share of this frame in the mean that radiance() keeps, (0, 1]; 1 forgets those before. 0: nothing is kept.
+    // Share of this frame in the mean that is kept and shown, (0, 1]; 1 forgets those before. 0: nothing is kept.
     float new_share = 0.0f;
+    float filter_radius_px =
+        1.0f;  // of the tent that weighs samples, [1, 2]; 1: each pixel is its own sample
 };
 
 class Rasteriser {
@@ -47,15 +49,13 @@ class Rasteriser {
                    const PictureSettings& picture);
     // A frame that draws nothing: the picture stays as it is.
     void skip_frame();
-    // Makes radiance() fit the picture; waits for the device the first time at a size. Errors: limit_exceeded where the
+    // Makes room for the mean of frames; waits for the device the first time at a size. Errors: limit_exceeded where the
     // device takes no buffer of 12 bytes a pixel.
     Status keep_radiance();
 
     uint32_t width() const { return width_; }
     uint32_t height() const { return height_; }
     const gpu::Buffer& color() const { return color_; }
-    // Linear radiance, three floats a pixel, before exposure and tone curve: the mean of the frames kept.
-    const gpu::Buffer& radiance() const { return radiance_; }
     const gpu::Buffer& visibility() const { return visibility_; }
     // Large triangles that found no room in the list of the last finished frame of this slot.
     uint32_t dropped_triangles() const { return dropped_triangles_; }
@@ -69,9 +69,9 @@ class Rasteriser {
     };
     struct ResolveConstants {
         vec4 right, up, forward;
-        uint32_t view;
-        float new_share;
         vec2 shift_px;
+        uint32_t view;
+        float new_share, side_weight;
     };
     struct Slot {
         gpu::Buffer instances, entries, light;
@@ -83,6 +83,7 @@ class Rasteriser {
     Status make_big_triangles(uint32_t limit);
     void read_big_count(uint32_t slot);
     void add_passes();
+    uint32_t resolve_groups() const;
     void draw(VkCommandBuffer commands, WorkKind kind);
     const gpu::Buffer& last_binding(WorkKind kind) const;
 
@@ -92,10 +93,10 @@ class Rasteriser {
     gpu::Buffer visibility_, color_, radiance_, vertices_, owners_, big_triangles_;
     std::vector<Slot> slots_;
     std::array<gpu::Pipeline, k_work_kinds> group_pipelines_, lane_pipelines_;
-    gpu::Pipeline big_pipeline_, resolve_pipeline_, resolve_keep_pipeline_;
+    gpu::Pipeline big_pipeline_, resolve_pipeline_, accumulate_pipeline_, resolve_mean_pipeline_;
     ResourceIndex visibility_resource_ = 0, color_resource_ = 0, radiance_resource_ = 0, big_resource_ = 0;
     std::array<uint32_t, k_work_kinds> draw_passes_{};
-    uint32_t clear_pass_ = 0, big_pass_ = 0, big_count_pass_ = 0, resolve_pass_ = 0;
+    uint32_t clear_pass_ = 0, big_pass_ = 0, big_count_pass_ = 0, accumulate_pass_ = 0, resolve_pass_ = 0;
     ResourceIndex big_count_resource_ = 0;
     uint32_t big_limit_ = 0, dropped_triangles_ = 0;
 

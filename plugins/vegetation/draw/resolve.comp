@@ -1,66 +1,61 @@
 #version 460
-// Lights each pixel once, from its depth and surface word. One group takes up to 256 pixels of a row, a lane every
-// n-th. With k_keep the mean over the frames of a view at rest is kept, and shown.
+// Lights each pixel once and makes the picture. A sample a pixel is weighed with its neighbours by a tent, which is
+// nearer to the mean over the pixel than the sample alone: what is drawn is finer than pixels.
+// A lane takes k_columns columns of a block, row by row; a neighbour's light comes from the lane beside, the rows above
+// and below from the loop, so nothing is lit or fetched twice but at the block's borders.
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
-#include "plugins/vegetation/draw/surface.glsl"
-#include "plugins/vegetation/draw/light.glsl"
+#extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_shuffle_relative : require
+#include "plugins/vegetation/draw/shade_pixel.glsl"
 
-layout(local_size_x_id = 0) in;
-layout(constant_id = 1) const bool k_keep = false;
+layout(constant_id = 1) const bool k_mean = false;  // of the mean that accumulate made, not of the frame
+layout(constant_id = 2) const int k_columns = 4;
+layout(constant_id = 3) const int k_rows = 64;
+layout(binding = 3) writeonly buffer Color { uint color[]; };
 
-layout(push_constant) uniform Frame {
-    vec4 right;    // camera axis over the focal length in pixels; w: image width
-    vec4 up;       // likewise; w: image height
-    vec4 forward;  // w: near distance in m
-    uint view;         // RepresentationView of lod/settings.h
-    float new_share;   // of this frame in the mean; 1: those before are forgotten
-    vec2 shift_px;     // where in the pixel the frame is sampled, from its centre
-} frame;
-
-layout(binding = 0) readonly buffer Visibility { uint64_t visibility[]; };
-layout(binding = 1) writeonly buffer Color { uint color[]; };
-layout(binding = 2) readonly buffer Lights { Light light; };
-layout(binding = 3) buffer Radiance { float radiance[]; };  // three a pixel; of k_keep alone
-
-const uint k_run = 256u;  // pixels of one row
+vec3 light_at(Light sun, int column, int row, int width, int height) {
+    uint x = uint(clamp(column, 0, width - 1)), y = uint(clamp(row, 0, height - 1));
+    if (!k_mean) return shade_pixel(sun, x, y);
+    uint place = (y * uint(width) + x) * 3u;
+    return vec3(radiance[place], radiance[place + 1u], radiance[place + 2u]);
+}
 
 void main() {
-    uint group = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
-    uint width = uint(frame.right.w), runs_a_row = (width + k_run - 1u) / k_run;
-    uint row = group / runs_a_row, first = (group - row * runs_a_row) * k_run;
-    if (row >= uint(frame.up.w)) return;
-    uint last = min(first + k_run, width);
+    int width = int(frame.right.w), height = int(frame.up.w);
     Light sun = light;
-    vec3 ray_row = frame.forward.xyz - frame.right.xyz * (0.5 * frame.right.w - 0.5 - frame.shift_px.x) -
-                   frame.up.xyz * (float(row) + 0.5 + frame.shift_px.y - 0.5 * frame.up.w);
-    for (uint column = first + gl_LocalInvocationID.x; column < last; column += gl_WorkGroupSize.x) {
-        uint index = row * width + column;
-        uint64_t word = visibility[index];
-        uint surface = uint(word);
-        float depth = uintBitsToFloat(uint(word >> 32));
-        vec3 ray = ray_row + frame.right.xyz * float(column);
-        float ray_length = length(ray);
-        vec3 direction = ray / ray_length;
-        bool covered = depth > 0.0;
-        float distance_m = frame.forward.w / max(depth, 1.0e-12) * ray_length;
-        vec3 normal = decode_normal(surface);
-        normal *= inversesqrt(max(dot(normal, normal), 1.0e-12));
-        vec3 albedo = decode_color_linear(surface);
-        vec3 lit = shade(sun, normal, -direction, albedo, decode_openness(surface), (surface & k_leaf_bit) != 0u);
-        lit = apply_haze(sun, lit, direction, distance_m);
-        vec3 shown = covered ? lit : sky_radiance(sun, direction);
-        shown = frame.view == 1u && covered ? albedo * (0.3 + 0.7 * abs(normal.y)) : shown;
-        shown = frame.view == 2u ? (covered ? albedo : vec3(0.0)) : shown;
-        if (k_keep) {
-            uint place = index * 3u;
-            if (frame.new_share < 1.0)
-                shown = mix(vec3(radiance[place], radiance[place + 1u], radiance[place + 2u]), shown, frame.new_share);
-            radiance[place] = shown.r;
-            radiance[place + 1u] = shown.g;
-            radiance[place + 2u] = shown.b;
+    float side = frame.side_weight, own = 1.0 / (1.0 + 2.0 * side);
+    side *= own;
+    int lanes = int(gl_SubgroupSize), lane = int(gl_SubgroupInvocationID);
+    int block_width = lanes * k_columns - 2;  // the outermost columns have a neighbour missing
+    int blocks_across = (width + block_width - 1) / block_width, blocks_down = (height + k_rows - 1) / k_rows;
+    int group = int(gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x);
+    int stride = int(gl_NumWorkGroups.x * gl_NumWorkGroups.y * gl_NumSubgroups);
+    for (int block = group * int(gl_NumSubgroups) + int(gl_SubgroupID); block < blocks_across * blocks_down;
+         block += stride) {
+        int block_down = block / blocks_across;
+        int first_column = (block - block_down * blocks_across) * block_width - 1;
+        int end_column = min(first_column + 1 + block_width, width), lane_column = first_column + lane * k_columns;
+        int first_row = block_down * k_rows, end_row = min(first_row + k_rows, height);
+        vec3 above[k_columns], here[k_columns];
+        for (int row = first_row - 1; row <= end_row; ++row) {
+            vec3 lit[k_columns];
+            for (int i = 0; i < k_columns; ++i) lit[i] = light_at(sun, lane_column + i, row, width, height);
+            vec3 left = subgroupShuffleUp(lit[k_columns - 1], 1u), right = subgroupShuffleDown(lit[0], 1u);
+            for (int i = 0; i < k_columns; ++i) {
+                vec3 before = i > 0 ? lit[max(i - 1, 0)] : left;
+                vec3 after = i < k_columns - 1 ? lit[min(i + 1, k_columns - 1)] : right;
+                vec3 below = lit[i] * own + (before + after) * side;
+                int column = lane_column + i;
+                if (row > first_row && column > first_column && column < end_column) {
+                    vec3 sum = here[i] * own + (above[i] + below) * side;
+                    vec3 shown = frame.view == k_view_coverage ? encode_srgb(sum) : present(sun, sum);
+                    uvec3 bytes = uvec3(shown * 255.0 + 0.5);
+                    color[uint(row - 1) * uint(width) + uint(column)] =
+                        bytes.x | bytes.y << 8 | bytes.z << 16 | 0xff000000u;
+                }
+                above[i] = here[i];
+                here[i] = below;
+            }
         }
-        uvec3 bytes = uvec3(present(sun, shown) * 255.0 + 0.5);
-        color[index] = bytes.x | bytes.y << 8 | bytes.z << 16 | 0xff000000u;
     }
 }

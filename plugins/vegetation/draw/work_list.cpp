@@ -1,6 +1,7 @@
 #include "plugins/vegetation/draw/work_list.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 
 namespace coppice {
@@ -55,7 +56,14 @@ void WorkPart::add(const PartGeometry& geometry, const PartChoice& choice, uint3
         return std::pair(first, std::min(count, stored - first));
     };
     auto [first_line, lines_from_start] = cut(choice.lines, geometry.line_count);
-    WorkEntry line{geometry.first_line_vertex, 0, instance, 0, choice.line_width_px, 0, 0, 0};
+    WorkEntry line{geometry.first_line_vertex,
+                   0,
+                   instance,
+                   0,
+                   choice.line_width_px,
+                   std::bit_cast<uint32_t>(choice.turned_share),
+                   0,
+                   0};
     line.count = choice.lines - lines_from_start;
     add_run(WorkKind::lines, line, 2);
     line.first_vertex += 2 * first_line;

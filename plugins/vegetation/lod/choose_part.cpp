@@ -58,6 +58,7 @@ PartChoice choose_lines(const PackedPart& part, float projected_area_px2, float 
         return all_triangles(part);
     choice.lines = round_by_chance(q * float(part.line_count), chance, part.line_count);
     choice.line_width_px = d / part.importance;
+    choice.turned_share = 1.0f - std::sqrt(q);
     return choice;
 }
 

@@ -15,6 +15,9 @@ struct PartChoice {
     uint32_t skipped_points = 0;   // about how many of `points` that leaves out
     float splat_px = 0.0f;         // side of the square a point covers
     float line_width_px = 0.0f;
+    // A line that stands for n leaves shows other normals than its own in 1 - 1 / sqrt(n) of its pixels, so that the
+    // contrast of what it shows is that of n leaves' mean (ERRATA 12).
+    float turned_share = 0.0f;
 };
 
 // p = c_p A'_p / d'^2, times importance (ERRATA 1). Not rounded; finite and >= 0 for finite input.

@@ -19,6 +19,8 @@ RestingFrame resting_frame(uint32_t index, const FrameSettings& settings) {
         vec2(0.5f);
     frame.new_share = 1.0f / float(index + 1);
     frame.sample_distance_px = settings.sample_distance_px;
+    // Many samples a pixel need no neighbours.
+    frame.filter_radius_px = 1.0f + (settings.filter_radius_px - 1.0f) / float(index + 1);
     return frame;
 }
 

@@ -12,6 +12,7 @@ struct RestingFrame {
     vec2 shift_px{0.0f};     // where in the pixel the frame is sampled, from its centre; |shift| <= 1/2
     float new_share = 1.0f;  // of this frame in the mean
     float sample_distance_px = 1.0f;
+    float filter_radius_px = 1.0f;
     uint32_t index = 0;  // turns over which points and lines are drawn; 0: the first ones
 };
 

@@ -24,6 +24,9 @@ struct FrameSettings {
     bool level_of_detail = true;  // false: every triangle of everything in view
     bool blend = true;            // false: switch from points to triangles at once
     RepresentationView view = RepresentationView::lit;
+    // Each pixel shows its sample and its neighbours' under a tent of this radius, [1, 2] px; 1: its own alone. Leaves
+    // are finer than pixels, and a sample of one point a pixel is far from the pixel's mean.
+    float filter_radius_px = 2.0f;
     // While camera, light, scene and settings rest, frames are averaged, up to this many, each sampled at another place
     // of the pixel; then nothing is drawn until something moves. 0: every frame stands alone.
     uint32_t accumulate_limit = 0;

@@ -75,5 +75,67 @@ TEST(Frustum, CullsWhatIsWellBesideAndBehind) {
     EXPECT_EQ(see_box(f, {vec3(-1, -1, -60), vec3(1, 1, 50)}), Visibility::across);
 }
 
+// The stretch of a small square that faces the viewer, found by projecting its corners.
+double stretch_by_projection(const Frustum& f, dvec3 direction) {
+    const double distance = 40.0, half = 1e-4;
+    const dvec3 right(f.right), up(f.up), forward(f.forward);
+    const dvec3 across =
+        glm::normalize(glm::cross(direction, std::fabs(direction.y) < 0.9 ? dvec3(0, 1, 0) : dvec3(1, 0, 0)));
+    const dvec3 beside = glm::cross(direction, across);
+    double x[4], y[4], area = 0.0;
+    for (int c = 0; c < 4; ++c) {
+        const dvec3 p = direction * distance + across * (c == 0 || c == 3 ? half : -half) +
+                        beside * (c < 2 ? half : -half);
+        x[c] = glm::dot(right, p) / glm::dot(forward, p);
+        y[c] = glm::dot(up, p) / glm::dot(forward, p);
+    }
+    for (int c = 0; c < 4; ++c) area += 0.5 * (x[c] * y[(c + 1) % 4] - x[(c + 1) % 4] * y[c]);
+    return std::sqrt(std::fabs(area)) / (2.0 * half / distance);
+}
+
+TEST(OffAxisStretch, IsWhatProjectionDoes) {
+    Random random(3);
+    float most = 1.0f;
+    for (int i = 0; i < 2000; ++i) {
+        const Frustum f = make_frustum(some_camera(random), 1280, 720);
+        const float tangent_y = 360.0f / f.focal_px, tangent_x = 640.0f / f.focal_px;
+        const vec3 place = (f.forward + f.right * (tangent_x * random.next_in(-1, 1)) +
+                            f.up * (tangent_y * random.next_in(-1, 1))) *
+                           random.next_in(0.5f, 900.0f);
+        const float stretch = off_axis_stretch(f, place, glm::length(place));
+        const double wanted = stretch_by_projection(f, glm::normalize(dvec3(place)));
+        ASSERT_NEAR(stretch / wanted, 1.0, 1e-3) << wanted;
+        most = std::max(most, stretch);
+    }
+    EXPECT_GT(most, 5.0f);
+    const Frustum f = make_frustum(Camera{}, 1280, 720);
+    EXPECT_NEAR(off_axis_stretch(f, f.forward * 17.0f, 17.0f), 1.0f, 1e-5f);
+    // A plant at the border of a wide picture is a quarter larger each way: 30 degrees.
+    EXPECT_NEAR(off_axis_stretch(f, f.forward * 0.8660254f + f.right * 0.5f, 1.0f), 1.24081f, 1e-4f);
+}
+
+// Plants whose crown reaches into the picture have their centres anywhere.
+TEST(OffAxisStretch, IsBoundedOutsideThePicture) {
+    Random random(4);
+    int outside = 0;
+    for (int i = 0; i < 20000; ++i) {
+        const Frustum f = make_frustum(some_camera(random), 1280, 720);
+        const float most = 1.0f / (f.corner_cos * std::sqrt(f.corner_cos));
+        const vec3 place = vec3(random.next_in(-1, 1), random.next_in(-1, 1), random.next_in(-1, 1)) *
+                           std::exp(random.next_in(-40.0f, 30.0f));
+        const float stretch = off_axis_stretch(f, place, glm::length(place));
+        ASSERT_TRUE(std::isfinite(stretch));
+        ASSERT_GE(stretch, 1.0f - 1e-5f);
+        ASSERT_LE(stretch, most * (1.0f + 1e-5f));
+        outside += stretch == most;
+    }
+    EXPECT_GT(outside, 5000);
+    const Frustum f = make_frustum(Camera{}, 1280, 720);
+    const float most = 1.0f / (f.corner_cos * std::sqrt(f.corner_cos));
+    EXPECT_NEAR(off_axis_stretch(f, -f.forward * 5.0f, 5.0f), most, 1e-5f);
+    EXPECT_NEAR(off_axis_stretch(f, f.right * 5.0f, 5.0f), most, 1e-5f);
+    EXPECT_EQ(off_axis_stretch(f, vec3(0.0f), 0.0f), 1.0f);
+}
+
 }  // namespace
 }  // namespace coppice

@@ -6,6 +6,9 @@
 namespace coppice {
 namespace {
 
+// A frame at rest may take this much longer, squared; the first move is drawn after it.
+constexpr float k_finest = 4.0f;
+
 float fraction(double value) { return float(value - std::floor(value)); }
 
 }  // namespace
@@ -17,10 +20,12 @@ RestingFrame resting_frame(uint32_t index, const FrameSettings& settings) {
     frame.shift_px =
         vec2(fraction(0.5 + 0.7548776662466927 * index), fraction(0.5 + 0.5698402909980532 * index)) -
         vec2(0.5f);
-    frame.new_share = 1.0f / float(index + 1);
-    frame.sample_distance_px = settings.sample_distance_px;
-    // Many samples a pixel need no neighbours.
-    frame.filter_radius_px = 1.0f + (settings.filter_radius_px - 1.0f) / float(index + 1);
+    const float n = float(index);
+    // Weights 1, 2, 3 ...: the later frames are the finer ones.
+    frame.new_share = 2.0f / (n + 2.0f);
+    frame.sample_distance_px = settings.sample_distance_px / std::min(std::sqrt(1.0f + n), k_finest);
+    // The more samples a pixel has the less its neighbours tell.
+    frame.filter_radius_px = 1.0f + (settings.filter_radius_px - 1.0f) / std::sqrt(std::sqrt(1.0f + n));
     return frame;
 }
 

@@ -1,4 +1,5 @@
-// Draws hand-made primitives with the rasteriser and reads the visibility buffer back, under the validation layer.
+// Draws hand-made primitives with the rasteriser and reads the visibility buffer and the picture back, under the
+// validation layer.
 #pragma once
 #include <gtest/gtest.h>
 #include <bit>
@@ -52,13 +53,20 @@ class RasterTest : public ::testing::Test {
         EXPECT_EQ(layout.dropped_entries, 0u);
         auto frame = ring_.begin();
         ASSERT_TRUE(frame);
-        rasteriser_->set_frame(0, layout, camera_, Light{}, {});
+        rasteriser_->set_frame(0, layout, camera_, light_, picture_);
         graph_.record(frame->commands, frame->timestamps);
         ASSERT_TRUE(ring_.submit());
         ASSERT_TRUE(ring_.wait(frame->serial));
         words_.resize(size_t(rasteriser_->width()) * rasteriser_->height());
         ASSERT_TRUE(
             gpu::read_now(*device_, rasteriser_->visibility(), 0, std::as_writable_bytes(std::span(words_))));
+    }
+    // Four bytes a pixel, red lowest.
+    std::vector<uint32_t> colors() const {
+        std::vector<uint32_t> rgba(size_t(rasteriser_->width()) * rasteriser_->height());
+        EXPECT_TRUE(
+            gpu::read_now(*device_, rasteriser_->color(), 0, std::as_writable_bytes(std::span(rgba))));
+        return rgba;
     }
     uint64_t word(uint32_t x, uint32_t y) const { return words_[size_t(y) * k_side + x]; }
     float depth(uint32_t x, uint32_t y) const { return std::bit_cast<float>(uint32_t(word(x, y) >> 32)); }
@@ -73,6 +81,8 @@ class RasterTest : public ::testing::Test {
     std::unique_ptr<Rasteriser> rasteriser_;
     gpu::CommandRing ring_;
     Camera camera_;
+    Light light_;
+    PictureSettings picture_;
     WorkList work_;
     std::vector<uint64_t> words_;
 };

@@ -21,9 +21,10 @@ struct AccuracySample {
     double quality;         // as the method names it
     double frame_ms;        // median
     uint64_t triangles, lines, points;
-    uint64_t geometry_bytes, list_bytes;  // vertices and owners the method keeps; instances and entries of a frame
-    FrameErrors errors;                   // against the reference with shadows
-    FrameErrors unshadowed_errors;        // against the reference lit as frames are: the level of detail's own
+    uint64_t geometry_bytes,
+        list_bytes;                 // vertices and owners the method keeps; instances and entries of a frame
+    FrameErrors errors;             // against the reference with shadows
+    FrameErrors unshadowed_errors;  // against the reference lit as frames are: the level of detail's own
     std::string picture_file, flip_file;  // beside the page; empty: not kept
 };
 
@@ -45,7 +46,8 @@ struct AccuracyRecord {
     uint64_t plants, scene_triangles;
     double duration_s;  // of the whole bench, references apart
     std::vector<AccuracyView> views;
-    std::vector<AccuracyMethodRecord> methods;  // methods[full_method] is every triangle at one sample a pixel
+    std::vector<AccuracyMethodRecord>
+        methods;  // methods[full_method] is every triangle at one sample a pixel
     uint32_t full_method = 0;
     std::vector<AccuracySample> samples;
     // A resting view: errors after n frames, n = 1, 2, 4 ...

@@ -42,7 +42,7 @@ class AccuracyMethod {
     virtual std::string quality_name() const = 0;  // "d' px"; "" where there is nothing to sweep
     // From the finest to the coarsest; at least one.
     virtual std::vector<double> qualities() const = 0;
-    virtual double default_quality() const = 0;            // one of them
+    virtual double default_quality() const = 0;               // one of them
     virtual uint32_t samples_per_pixel() const { return 1; }  // frames, each at another place of the pixel
     // Once, before the first frame; may take long. Errors: of the cook.
     virtual Status prepare(const MethodInput& input) = 0;

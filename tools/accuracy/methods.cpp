@@ -17,8 +17,6 @@ namespace {
 
 constexpr float k_paper_splat_factor = 1.3f;  // Deussen et al. 2002 say 1.2 to 1.5
 
-std::vector<double> sample_distances_px() { return {0.5, 0.71, 1.0, 1.41, 2.0, 2.83, 4.0, 5.66, 8.0}; }
-
 class FullMethod final : public AccuracyMethod {
   public:
     FullMethod(uint32_t samples, float filter_radius_px)
@@ -59,6 +57,7 @@ struct Hybrid {
     const char* what;
     FrameSettings settings;
     std::optional<CookSettings> cook;  // where the plants are cooked another way
+    bool is_default = false;           // swept in finer steps
 };
 
 class HybridMethod final : public AccuracyMethod {
@@ -67,7 +66,10 @@ class HybridMethod final : public AccuracyMethod {
     std::string name() const override { return hybrid_.name; }
     std::string what() const override { return hybrid_.what; }
     std::string quality_name() const override { return "d' px"; }
-    std::vector<double> qualities() const override { return sample_distances_px(); }
+    std::vector<double> qualities() const override {
+        return hybrid_.is_default ? std::vector<double>{0.5, 0.71, 1.0, 1.41, 2.0, 2.83, 4.0, 5.66, 8.0}
+                                  : std::vector<double>{0.5, 1.0, 2.0, 4.0, 8.0};
+    }
     double default_quality() const override { return 1.0; }
 
     Status prepare(const MethodInput& input) override {
@@ -119,7 +121,7 @@ std::vector<Hybrid> hybrids() {
     points.lines = false;
     return {
         {"hybrid, measured", "Points, lines and triangles by measured projections: the program's defaults.",
-         FrameSettings{}, std::nullopt},
+         FrameSettings{}, std::nullopt, true},
         {"hybrid, isotropic",
          "The paper's hybrid with pi/4 of the lines' length for any direction, splat factor 1.3.", isotropic,
          std::nullopt},

@@ -13,6 +13,7 @@
 #include "runtime/core/file.h"
 #include "runtime/core/log.h"
 #include "runtime/core/progress.h"
+#include "tools/accuracy/accuracy_figures.h"
 #include "tools/accuracy/accuracy_page.h"
 #include "tools/accuracy/accuracy_record.h"
 #include "tools/accuracy/accuracy_summary.h"
@@ -27,13 +28,13 @@ namespace coppice {
 namespace {
 
 constexpr uint32_t k_spread_views = 5;  // of a path, where a scene has no views of its own
-constexpr double k_pop_step = 1.02;     // of the quality, from frame to frame
-constexpr uint32_t k_pop_steps = 70;    // from the default quality over 1.6 to 2.5 times it
-constexpr uint32_t k_shimmer_frames = 16;
+constexpr double k_pop_step = 1.03;     // of the quality, from frame to frame
+constexpr uint32_t k_pop_steps = 36;    // from 0.7 to 2 times the default quality
+constexpr uint32_t k_shimmer_frames = 6;
 constexpr double k_shimmer_step_px = 0.125;
-constexpr uint32_t k_resting_frames = 64;
-constexpr double k_resting_limit_ms = 20000.0;  // of one view
-constexpr uint32_t k_temporal_views = 3;
+constexpr uint32_t k_resting_frames = 64, k_resting_growth = 4;
+constexpr double k_resting_limit_ms = 8000.0;  // of one measurement
+constexpr uint32_t k_temporal_views = 2;
 
 Result<std::vector<std::unique_ptr<AccuracyMethod>>> choose_methods(const std::string& wanted) {
     std::vector<std::unique_ptr<AccuracyMethod>> all = make_accuracy_methods(), chosen;
@@ -113,6 +114,7 @@ class AccuracyBench {
         COPPICE_CHECK(measure_motion());
         COPPICE_CHECK(rest());
         record_.duration_s = clock.ms() * 1e-3;
+        record_.figures = accuracy_figures(record_);
         return std::move(record_);
     }
 
@@ -351,7 +353,7 @@ class AccuracyBench {
         return shimmer.rms();
     }
 
-    // The default method while nothing moves: 1, 2, 4 ... frames.
+    // The default method while nothing moves: 1, 4, 16 ... frames.
     Status rest() {
         AccuracyMethod& method = *methods_[default_method(record_)];
         Progress progress("a view at rest", views_.size());
@@ -359,8 +361,9 @@ class AccuracyBench {
             COPPICE_TRY(const DrawnFrame drawn,
                         method.frame(views_[view], focal_px_, method.default_quality()));
             double last_ms = 0.0;
-            for (uint32_t frames = 1; frames <= k_resting_frames && last_ms < k_resting_limit_ms / 2.0;
-                 frames *= 2) {
+            for (uint32_t frames = 1;
+                 frames <= k_resting_frames && last_ms * k_resting_growth < k_resting_limit_ms;
+                 frames *= k_resting_growth) {
                 Stopwatch clock;
                 COPPICE_TRY(const MeasuredFrame frame, drawer_->measure(drawn, views_[view], frames));
                 last_ms = clock.ms() / 2.0;  // the mask takes as long

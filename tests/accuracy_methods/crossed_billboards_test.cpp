@@ -109,6 +109,7 @@ TEST(CrossedBillboards, DrawnCoverageIsThePlants) {
     const Plant tree = small_tree();
     const SubstituteLadder ladder = ladder_of(tree);
     FrameSettings settings;
+    settings.weigh_by_facing = false;
     CoverageRaster raster(k_side_px);
     double error_sum = 0.0;
     int count = 0;
@@ -146,12 +147,14 @@ TEST(CrossedBillboards, DrawnCoverageIsThePlants) {
 TEST(CrossedBillboards, TheCoarsestKeepsItsAreaFromAnyDistance) {
     const SubstituteLevel coarsest = ladder_of(small_tree()).back();
     const PackedPart& part = coarsest.plant.parts[0];
+    FrameSettings settings;
+    settings.weigh_by_facing = false;
     for (float texel_px : {1.0f, 0.7f, 0.5f, 0.2f}) {
         const float pixels_per_meter = texel_px / coarsest.grain_m;
         double area_px2 = 0.0;
         for (int i = 0; i < 64; ++i) {
-            const PartChoice choice = choose_part(part, {vec3(0, 0, -1), pixels_per_meter}, FrameSettings{},
-                                                  (float(i) + 0.5f) / 64.0f);
+            const PartChoice choice =
+                choose_part(part, {vec3(0, 0, -1), pixels_per_meter}, settings, (float(i) + 0.5f) / 64.0f);
             area_px2 += double(choice.points) * double(choice.splat_px) * double(choice.splat_px) / 64.0;
         }
         EXPECT_NEAR(area_px2, double(part.point_count) * double(texel_px) * double(texel_px),

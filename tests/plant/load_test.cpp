@@ -179,7 +179,7 @@ TEST(LoadPlant, SaysWhatOtherFilesAre) {
     EXPECT_EQ(load({}).error().id, ErrorId::format_unknown);
     EXPECT_EQ(load_plant("/nonexistent/a.plant").error().id, ErrorId::file_missing);
     std::vector<std::byte> newer = pack_plant(small_plant());
-    newer[4] = std::byte(2);
+    newer[4] = std::byte(k_plant_version + 1);
     EXPECT_EQ(load(newer).error().id, ErrorId::format_unknown);
 }
 

@@ -108,11 +108,14 @@ std::vector<Hybrid> hybrids() {
     FrameSettings isotropic;
     isotropic.projection = ProjectionMode::isotropic;
     isotropic.splat_factor = k_paper_splat_factor;
-    isotropic.filter_radius_px = 1.0f;  // the paper has none
+    isotropic.filter_radius_px = 1.0f;  // the paper has neither
+    isotropic.weigh_by_facing = false;
     FrameSettings printed = isotropic;
     printed.projection = ProjectionMode::printed;
     FrameSettings unfiltered;
     unfiltered.filter_radius_px = 1.0f;
+    FrameSettings alike;
+    alike.weigh_by_facing = false;
     FrameSettings unblended;
     unblended.blend = false;
     CookSettings shuffled;
@@ -128,6 +131,8 @@ std::vector<Hybrid> hybrids() {
         {"hybrid, printed", "The paper's hybrid, its formulas as printed, splat factor 1.3.", printed,
          std::nullopt},
         {"hybrid, unfiltered", "The defaults, but each pixel shows its own sample alone.", unfiltered,
+         std::nullopt},
+        {"hybrid, equal splats", "The defaults, but splats of one size, however they face.", alike,
          std::nullopt},
         {"hybrid, unblended", "The defaults, but points give way to triangles at once.", unblended,
          std::nullopt},
@@ -180,6 +185,7 @@ class SubstituteMethod final : public AccuracyMethod {
         const SubstituteScenes::Choice choice = scenes_->choose(camera, focal_px, quality);
         FrameSettings settings;
         settings.sample_distance_px = float(quality);
+        settings.weigh_by_facing = false;  // a billboard's texels are no leaves
         return DrawnFrame{choice.scene, settings, choice.revision};
     }
 

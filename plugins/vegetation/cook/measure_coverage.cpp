@@ -13,8 +13,10 @@ namespace {
 constexpr uint32_t k_side_limit = 2048;
 constexpr double k_wanted_pixels = 30000.0;  // over all views of a level: keeps its noise under 1 %
 constexpr double k_triangle_budget = 3.0e6;  // over all views of a level
-constexpr uint32_t k_least_views = 8, k_most_views = 1024;
-constexpr float k_least_area_px2 = 6.0f;  // below, a level says what the next larger one says
+constexpr uint32_t k_least_views = 8, k_most_views = 8192;
+// Below these a level says what the next larger one says.
+constexpr float k_least_area_px2 = 0.5f;
+constexpr double k_least_pixels = 2000.0;  // over all views: noise under 3 %
 constexpr int k_rounds = 6;
 
 struct View {
@@ -56,6 +58,7 @@ class PartCoverage {
         double by_cost = k_triangle_budget / double(part_.triangle_count + 1);
         uint32_t views = uint32_t(std::clamp(std::min(k_wanted_pixels / double(area_px2), by_cost),
                                              double(k_least_views), double(k_most_views)));
+        if (double(views) * double(area_px2) < k_least_pixels) return 0.0f;
         CoverageRaster raster(side);
         uint64_t wanted = 0;
         for (uint32_t i = 0; i < views; ++i)
@@ -95,10 +98,15 @@ class PartCoverage {
         raster.begin();
         if (!points_.empty()) {
             float stored = float(points_.size()), p = std::min(part_.importance * area, stored);
-            float splat_side = std::sqrt(area / std::max(p, 1.0e-6f));
+            // lod/choose_part.cpp: squares by |n . v|
+            float sides = part_.flags & k_part_closed ? 2.0f : 1.0f;
+            float facing =
+                std::min(sides * part_.projected_area_m2.evaluate(direction) / part_.area_m2, 1.0f);
+            float splat_area = area / std::max(p * facing, 1.0e-6f);
             size_t count = std::min(points_.size(), size_t(p + view.chance));
             for (size_t i = 0; i < count; ++i)
-                raster.square(place(view, points_[i], pixels_per_meter, side), splat_side);
+                raster.square(place(view, points_[i], pixels_per_meter, side),
+                              std::sqrt(splat_area * facing_of(points_[i], direction)));
         } else {
             float length = part_.projected_length_m.evaluate(direction) * pixels_per_meter;
             float q = std::min(part_.importance * area / std::max(length, 1.0e-6f), 1.0f),
@@ -111,6 +119,10 @@ class PartCoverage {
                             width * std::bit_cast<float>(line_vertices_[2 * i + 1].surface));
         }
         return raster.covered();
+    }
+
+    static float facing_of(const PackedVertex& vertex, vec3 direction) {
+        return std::fabs(glm::dot(decode_surface(vertex.surface).normal, direction));
     }
 
     const PackedPart& part_;

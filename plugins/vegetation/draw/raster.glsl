@@ -36,6 +36,7 @@ struct Entry {
     uint owner_min;
     bool cull_back;
     bool ground;
+    float mean_facing;  // of points: |cos| of normal and view in the mean; 0: all are of one size
 };
 
 // The entry of this lane, false where there is none; its primitives are i = first; i < count; i += step.
@@ -57,7 +58,7 @@ bool take_entry(out uint index, out uint first, out uint step) {
 Entry load_entry(uint index) {
     uvec4 a = texelFetch(entries, int(index * 2u));
     uvec4 b = texelFetch(entries, int(index * 2u + 1u));
-    return Entry(a.x, a.y, a.z & ~k_ground_bit, a.w, uintBitsToFloat(b.x), b.y, b.z != 0u, (a.z & k_ground_bit) != 0u);
+    return Entry(a.x, a.y, a.z & ~k_ground_bit, a.w, uintBitsToFloat(b.x), b.y, b.z != 0u, (a.z & k_ground_bit) != 0u, uintBitsToFloat(b.w));
 }
 
 // Plant space -> (column * w, row * w, w), and the rotation for normals.
@@ -95,6 +96,17 @@ const uint k_kind_point = 0u, k_kind_line = 1u, k_kind_triangle = 2u;
 
 vec3 turn_direction(Transform t, vec3 direction) {
     return vec3(dot(t.turn_x, direction), dot(t.turn_y, direction), dot(t.turn_z, direction));
+}
+
+// Unit, from the viewer.
+vec3 view_direction(Transform t, vec3 position_plant) {
+    vec3 p = t.place + turn_direction(t, position_plant);
+    return p * inversesqrt(max(dot(p, p), 1.0e-30));
+}
+
+vec3 unit_normal(Transform t, uint surface) {
+    vec3 n = turn_direction(t, decode_normal(surface));
+    return n * inversesqrt(max(dot(n, n), 1.0e-30));
 }
 
 // Turns a surface word from plant space into world space.

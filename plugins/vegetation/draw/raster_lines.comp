@@ -10,39 +10,44 @@
 // One of four normals, for a pixel: the line's own, or others about its axis.
 struct LineNormals {
     uvec4 choice;
-    float share;  // of pixels that do not show choice[0] only because it is the line's own
+    vec4 limits;  // of a chance in [0, 1): below the first choice[0], and so on
 };
 
-LineNormals line_normals(Transform t, vec3 along_plant, vec3 middle_plant, uint surface, float share) {
+LineNormals line_normals(Transform t, vec3 along_plant, vec3 begin_plant, uint surface, float share) {
     vec3 along = turn_direction(t, along_plant);
     along *= inversesqrt(max(dot(along, along), 1.0e-30));
-    vec3 own = turn_direction(t, decode_normal(surface));
-    own *= inversesqrt(max(dot(own, own), 1.0e-30));
+    vec3 own = unit_normal(t, surface);
+    vec3 view = view_direction(t, begin_plant);
     vec3 beside = cross(along, own);
     if ((surface & k_leaf_bit) != 0u) {
         vec3 half_way = own + beside, back = beside - own;  // both sides of a leaf can be seen: half a turn is enough
+        // What is seen of a leaf goes with |n . v|.
+        vec4 seen = abs(vec4(dot(own, view), 0.7071 * dot(half_way, view), dot(beside, view), 0.7071 * dot(back, view)));
+        vec4 chances = share * seen / max(seen.x + seen.y + seen.z + seen.w, 1.0e-6);
+        chances.x = 1.0 - chances.y - chances.z - chances.w;
+        vec2 two = vec2(chances.x, chances.x + chances.y);
         return LineNormals(uvec4(encode_normal(own), encode_normal(half_way), encode_normal(beside), encode_normal(back)),
-                           share);
+                           vec4(two, two.y + chances.z, 1.0));
     }
     // Places evenly spread over the visible width of a cylinder.
-    vec3 to_viewer = -(t.place + turn_direction(t, middle_plant));
-    vec3 front = to_viewer - along * dot(to_viewer, along);
+    vec3 front = along * dot(view, along) - view;
     float front_length = length(front);
     front = front_length > 0.0 ? front / front_length : own;
     beside = cross(along, front);
     return LineNormals(uvec4(encode_normal(0.968 * front + 0.25 * beside), encode_normal(0.968 * front - 0.25 * beside),
                              encode_normal(0.661 * front + 0.75 * beside), encode_normal(0.661 * front - 0.75 * beside)),
-                       1.0);
+                       vec4(0.25, 0.5, 0.75, 1.0));
 }
 
 uint pick_normal(LineNormals normals, ivec2 pixel, uint line) {
     uint hash = uint(pixel.x) * 0x8da6b343u ^ uint(pixel.y) * 0xd8163841u ^ line * 0xcb1ab31fu;
     hash = (hash ^ hash >> 15) * 0x2c1b3c6du;
     hash ^= hash >> 13;
-    uint quarter = hash & 3u;
-    uint other = quarter == 0u ? normals.choice.x : quarter == 1u ? normals.choice.y
-                 : quarter == 2u ? normals.choice.z : normals.choice.w;
-    return float(hash >> 8) * (1.0 / 16777216.0) < normals.share ? other : normals.choice.x;
+    float chance = float(hash >> 8) * (1.0 / 16777216.0);
+    return chance < normals.limits.x   ? normals.choice.x
+           : chance < normals.limits.y ? normals.choice.y
+           : chance < normals.limits.z ? normals.choice.z
+                                       : normals.choice.w;
 }
 
 void main() {
@@ -76,9 +81,10 @@ void main() {
         if (!(span < 1.0e7 && abs(a.y) + abs(b.y) < 1.0e7)) continue;  // overflowed: coordinates no plant has
         float slope = span > 0.0 ? (b.y - a.y) / span : 0.0;
         float depth_slope = span > 0.0 ? (depths.y - depths.x) / span : 0.0;
-        float width = min(entry.size_px * uintBitsToFloat(v1.w) * sqrt(1.0 + slope * slope), 64.0);
         uint surface = turn_surface(t, v0.w, k_kind_line) & ~k_normal_bits;
-        LineNormals normals = line_normals(t, p1.xyz - p0.xyz, p0.xyz, v0.w, uintBitsToFloat(entry.owner_min));
+        LineNormals normals =
+            line_normals(t, p1.xyz - p0.xyz, p0.xyz, v0.w, uintBitsToFloat(entry.owner_min));
+        float width = min(entry.size_px * uintBitsToFloat(v1.w) * sqrt(1.0 + slope * slope), 64.0);
 
         float first = max(ceil(a.x - 0.5), 0.0), last = min(ceil(b.x - 0.5), limit.x);
         for (float column = first; column < last; column += 1.0) {

@@ -1,7 +1,8 @@
 #version 460
 // Points of one instance and part. A point covers the square of side size_px around it, that is, every pixel whose
 // centre lies inside: size_px^2 pixels in the mean, also where the side is under a pixel, so the mean coverage is exact
-// at any size.
+// at any size. A point stands for the same area of leaf as any other; what is seen of it goes with |n . v|, and so does
+// its square, so that what is shown is the mix of normals that the leaves show.
 #extension GL_GOOGLE_include_directive : require
 #include "plugins/vegetation/draw/raster.glsl"
 
@@ -15,17 +16,20 @@ void main() {
     Entry entry = load_entry(index);
     Transform t = load_transform(entry.instance, entry.ground);
     ivec2 size = ivec2(frame.row_x.w, frame.row_y.w);
-    float half_side = entry.size_px * 0.5;
     int side = k_side_limit > 0u ? int(k_side_limit) : min(int(ceil(entry.size_px)), 64);
 
     for (uint i = first_item; i < entry.count; i += step) {
         if (k_blend && texelFetch(owners, int(entry.first_owner + i)).x < entry.owner_min) continue;
         uvec4 vertex = texelFetch(vertices, int(entry.first_vertex + i));
-        vec3 p = project(t, uintBitsToFloat(vertex.xyz));
+        vec3 position = uintBitsToFloat(vertex.xyz);
+        vec3 p = project(t, position);
+        float facing = abs(dot(unit_normal(t, vertex.w), view_direction(t, position)));
+        // size_px is of a point that faces the viewer.
+        float side_px = entry.mean_facing > 0.0 ? entry.size_px * sqrt(facing) : entry.size_px;
         // First pixel whose centre lies inside, and how many more there are along each axis.
-        vec2 low = p.xy - half_side - 0.5;
+        vec2 low = p.xy - 0.5 * side_px - 0.5;
         vec2 first = ceil(low);
-        ivec2 count = ivec2(ceil(low + entry.size_px) - first);
+        ivec2 count = ivec2(ceil(low + side_px) - first);
         bool in_view = p.z >= frame.row_w.w && all(greaterThan(p.xy, vec2(-64.0))) &&
                        all(lessThan(p.xy, vec2(size) + 64.0));
         if (!in_view) continue;

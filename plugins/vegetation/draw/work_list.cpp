@@ -41,7 +41,7 @@ void WorkPart::add_run(WorkKind kind, WorkEntry entry, uint32_t vertices_a_primi
 }
 
 void WorkPart::add_triangles(uint32_t first_vertex, uint32_t count, uint32_t instance, bool cull_back) {
-    add_run(WorkKind::triangles, {first_vertex, count, instance, 0, 0.0f, 0, cull_back ? 1u : 0u, 0}, 3);
+    add_run(WorkKind::triangles, {first_vertex, count, instance, 0, 0.0f, 0, cull_back ? 1u : 0u, 0.0f}, 3);
 }
 
 void WorkPart::add_ground(uint32_t first_vertex, uint32_t triangle_count, uint32_t instance) {
@@ -63,7 +63,7 @@ void WorkPart::add(const PartGeometry& geometry, const PartChoice& choice, uint3
                    choice.line_width_px,
                    std::bit_cast<uint32_t>(choice.turned_share),
                    0,
-                   0};
+                   0.0f};
     line.count = choice.lines - lines_from_start;
     add_run(WorkKind::lines, line, 2);
     line.first_vertex += 2 * first_line;
@@ -77,8 +77,8 @@ void WorkPart::add(const PartGeometry& geometry, const PartChoice& choice, uint3
                     : side <= 2.0f + k_slack   ? WorkKind::points_2
                                                : WorkKind::points_any;
     auto [first_point, points_from_start] = cut(choice.points, geometry.point_count);
-    WorkEntry point{geometry.first_point,   0, instance, geometry.first_owner, side,
-                    choice.point_owner_min, 0, 0};
+    WorkEntry point{geometry.first_point,   0, instance,          geometry.first_owner, side,
+                    choice.point_owner_min, 0, choice.mean_facing};
     point.count = choice.points - points_from_start;
     add_run(kind, point, 1);
     point.first_vertex += first_point;

@@ -24,7 +24,7 @@ struct WorkEntry {
     float size_px;          // splat side or line width
     uint32_t owner_min;     // points_blend; of lines the bits of PartChoice::turned_share
     uint32_t cull_back;     // triangles only: 1: those that turn their back are left out
-    uint32_t unused;
+    float mean_facing;      // PartChoice's
 };
 static_assert(sizeof(WorkEntry) == 32);
 

@@ -10,6 +10,9 @@ uint32_t round_by_chance(float count, float chance, uint32_t limit) {
     return rounded >= float(limit) ? limit : uint32_t(std::max(rounded, 0.0f));
 }
 
+// A part seen this much on edge shows nothing to weigh.
+constexpr float k_least_facing = 0.02f;
+
 PartChoice all_triangles(const PackedPart& part) {
     PartChoice choice;
     choice.triangles = part.triangle_count;
@@ -71,9 +74,18 @@ PartChoice choose_part(const PackedPart& part, const PlantView& view, const Fram
     bool measured = settings.projection == ProjectionMode::measured;
     float d = std::max(settings.sample_distance_px, 1.0e-3f);
     if (part.kind == PackedPartKind::points) {
+        // |n . v| in the mean over the part's surface; of a closed one the half that turns away has the same.
+        const float sides = part.flags & k_part_closed ? 2.0f : 1.0f;
+        const float surface_px2 = part.area_m2 * view.pixels_per_meter * view.pixels_per_meter;
+        const float facing = surface_px2 > 0.0f ? std::min(sides * area_px2 / surface_px2, 1.0f) : 0.0f;
         if (measured && part.point_count > 0)
             area_px2 *= gain_at(part, area_px2 / (float(part.point_count) * d * d));
-        return choose_points(part, area_px2, settings, chance);
+        PartChoice choice = choose_points(part, area_px2, settings, chance);
+        if (settings.weigh_by_facing && facing > k_least_facing) {
+            choice.mean_facing = facing;
+            choice.splat_px /= std::sqrt(facing);
+        }
+        return choice;
     }
     float length_px = projected_length_px(part, view, settings.projection);
     if (measured && length_px > 0.0f) area_px2 *= gain_at(part, area_px2 / (length_px * d));

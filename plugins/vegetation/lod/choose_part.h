@@ -18,6 +18,9 @@ struct PartChoice {
     // A line that stands for n leaves shows other normals than its own in 1 - 1 / sqrt(n) of its pixels, so that the
     // contrast of what it shows is that of n leaves' mean (ERRATA 12).
     float turned_share = 0.0f;
+    // Splats are sized by |n . v|, whose mean this is; splat_px is of a point that faces the viewer. 0: all are of one
+    // size.
+    float mean_facing = 0.0f;
 };
 
 // p = c_p A'_p / d'^2, times importance (ERRATA 1). Not rounded; finite and >= 0 for finite input.

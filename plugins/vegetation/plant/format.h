@@ -10,7 +10,7 @@ namespace coppice {
 static_assert(std::endian::native == std::endian::little, "packed plants are used in place");
 
 inline constexpr char k_plant_magic[4] = {'C', 'P', 'L', 'T'};
-inline constexpr uint32_t k_plant_version = 1;
+inline constexpr uint32_t k_plant_version = 2;
 inline constexpr uint64_t k_plant_block_alignment = 64;
 
 enum PlantBlock : uint32_t {

@@ -40,7 +40,7 @@ enum class PackedPartKind : uint32_t { points = 0, lines = 1 };
 // Coverage gains at log2(fill) = -(k_gain_levels - 1) ... 0, where fill is the projected area in square
 // pixels over the number of points, or over the projected length of the lines in pixels: how finely the part
 // is resolved at d' = 1.
-inline constexpr uint32_t k_gain_levels = 10;
+inline constexpr uint32_t k_gain_levels = 16;
 
 // One part, or one octree cell's share of a part. 256 bytes.
 struct PackedPart {
@@ -61,7 +61,7 @@ struct PackedPart {
     DirectionForm projected_length_m;  // of the lines
     float mean_color_linear[3];
     std::array<float, k_gain_levels> coverage_gain;  // cook/measure_coverage.h
-    uint32_t reserved[11];
+    uint32_t reserved[5];
 };
 static_assert(sizeof(PackedPart) == 256);
 

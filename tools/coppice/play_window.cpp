@@ -12,6 +12,7 @@
 namespace coppice {
 namespace {
 
+constexpr uint32_t k_accumulate_limit = 64;  // frames of a view at rest
 constexpr float k_walk_m_per_s = 4.0f, k_fast_factor = 8.0f;
 constexpr float k_turn_rad_per_px = 0.0025f;
 constexpr float k_pitch_limit_rad = 1.55f;
@@ -110,6 +111,7 @@ Status play_in_window(const PlayOptions& options) {
 
     FrameSettings settings = options.settings;
     settings.sample_distance_px = options.sample_distance_px.value_or(host->scene.sample_distance_px);
+    settings.accumulate_limit = k_accumulate_limit;
     Flight flight{camera_at(host->scene.camera_path, 0.0)};
     std::vector<double> recent_ms;
     size_t frame_index = 0;

@@ -7,17 +7,6 @@
 namespace coppice {
 namespace {
 
-bool whole(const FloatPicture& picture) {
-    return picture.width > 0 && picture.height > 0 && picture.width <= k_picture_side_limit &&
-           picture.height <= k_picture_side_limit &&
-           picture.rgb.size() == size_t(picture.width) * picture.height * 3;
-}
-
-std::string text_of(const FloatPicture& picture) {
-    return std::to_string(picture.width) + "x" + std::to_string(picture.height) + " with " +
-           std::to_string(picture.rgb.size()) + " values";
-}
-
 // The picture's own memory, which comparing only reads.
 OIIO::ImageBuf view_of(const FloatPicture& picture) {
     OIIO::ImageSpec spec(int(picture.width), int(picture.height), 3, OIIO::TypeDesc::FLOAT);
@@ -27,10 +16,7 @@ OIIO::ImageBuf view_of(const FloatPicture& picture) {
 }  // namespace
 
 Result<PictureDifference> compare_images(const FloatPicture& a, const FloatPicture& b) {
-    if (!whole(a) || !whole(b) || a.width != b.width || a.height != b.height)
-        return fail(ErrorId::value_out_of_range, "", "",
-                    "pictures of " + text_of(a) + " and of " + text_of(b) + " do not compare",
-                    "two pictures of one size, sides from 1 to 16384, with all their values");
+    COPPICE_CHECK(check_same_size(a, b));
     auto failed = [](const std::string& why) {
         return fail(ErrorId::limit_exceeded, "", "", "OpenImageIO cannot compare: " + why,
                     "smaller pictures");

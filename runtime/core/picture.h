@@ -26,6 +26,9 @@ inline constexpr uint32_t k_picture_side_limit = 16384;
 // Alpha is dropped. Errors: write_failed, value_out_of_range (empty, or rgba of the wrong size).
 Status write_ppm(const std::string& path, const Picture& picture);
 Result<Picture> read_ppm(const std::string& path);
+// Not empty, all values there, of one size; else value_out_of_range.
+Status check_same_size(const FloatPicture& a, const FloatPicture& b);
+
 Status write_pfm(const std::string& path, const FloatPicture& picture);
 Result<FloatPicture> read_pfm(const std::string& path);
 

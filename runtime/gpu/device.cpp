@@ -126,6 +126,10 @@ Candidate examine(VkPhysicalDevice physical, bool present) {
     lack(has.v12.timelineSemaphore, "timelineSemaphore");
     lack(has.v12.scalarBlockLayout, "scalarBlockLayout");
     lack(has.v13.synchronization2, "synchronization2");
+    VkPhysicalDeviceVulkan11Properties v11{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES};
+    VkPhysicalDeviceProperties2 properties{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &v11};
+    vkGetPhysicalDeviceProperties2(physical, &properties);
+    lack(v11.subgroupSupportedOperations & VK_SUBGROUP_FEATURE_SHUFFLE_RELATIVE_BIT, "subgroup shuffles");
     std::vector<VkExtensionProperties> extensions = device_extensions(physical);
     lack(has_extension(extensions, VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME),
          VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME);

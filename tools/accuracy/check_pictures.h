@@ -6,8 +6,6 @@
 
 namespace coppice {
 
-// Not empty, all values there, of one size.
-Status check_same_size(const FloatPicture& a, const FloatPicture& b);
 // what: "the reference's coverage", for the message.
 Status check_finite(std::span<const float> values, const char* what);
 

@@ -101,6 +101,7 @@ std::string scene_stem(const std::string& path) {
 
 class AccuracyBench {
   public:
+    // settings.out and settings.cache_dir are not empty; settings outlive it.
     explicit AccuracyBench(const BenchSettings& settings) : settings_(settings) {}
 
     Result<AccuracyRecord> run() {
@@ -164,7 +165,6 @@ class AccuracyBench {
             entry.is_default = entry.name == k_default_method;
             record_.methods.push_back(entry);
         }
-        focal_px_ = make_frustum(views_.front(), options.width, options.height).focal_px;
         return {};
     }
 
@@ -200,9 +200,8 @@ class AccuracyBench {
     }
 
     Status trace_references() {
-        const std::string cache_dir = settings_.cache_dir.empty() ? default_cache_dir() : settings_.cache_dir;
-        ReferenceCache cache(
-            {&original_.scene, original_.plants, host_->bare_terrain.get(), tracer_, images_, cache_dir});
+        ReferenceCache cache({&original_.scene, original_.plants, host_->bare_terrain.get(), tracer_, images_,
+                              settings_.cache_dir});
         ReferenceSettings settings;
         settings.width = record_.width;
         settings.height = record_.height;
@@ -235,7 +234,7 @@ class AccuracyBench {
     Result<AccuracySample> measure(uint32_t method_index, uint32_t view, double quality,
                                    FloatPicture* display) {
         AccuracyMethod& method = *methods_[method_index];
-        COPPICE_TRY(const DrawnFrame drawn, method.frame(views_[view], focal_px_, quality));
+        COPPICE_TRY(const DrawnFrame drawn, method.frame(views_[view], focal_px(views_[view]), quality));
         COPPICE_TRY(const MethodDrawer::Timing timing, drawer_->time(drawn, views_[view]));
         const uint32_t frames = method.samples_per_pixel();
         record_.scene_triangles = host_->vegetation->report().scene_triangles;
@@ -334,7 +333,7 @@ class AccuracyBench {
         FloatPicture before;
         double quality = method.default_quality() / std::pow(k_pop_step, double(k_pop_steps) / 3.0);
         for (uint32_t step = 0; step < k_pop_steps; ++step, quality *= k_pop_step) {
-            COPPICE_TRY(const DrawnFrame drawn, method.frame(camera, focal_px_, quality));
+            COPPICE_TRY(const DrawnFrame drawn, method.frame(camera, focal_px(camera), quality));
             COPPICE_TRY(FloatPicture now, drawer_->picture(drawn, camera, 1));
             if (step > 0) COPPICE_CHECK(energy.add(before, now));
             before = std::move(now);
@@ -345,10 +344,11 @@ class AccuracyBench {
     Result<double> shimmer_rms(AccuracyMethod& method, Camera camera) {
         Shimmer shimmer;
         for (uint32_t i = 0; i < k_shimmer_frames; ++i) {
-            COPPICE_TRY(const DrawnFrame drawn, method.frame(camera, focal_px_, method.default_quality()));
+            COPPICE_TRY(const DrawnFrame drawn,
+                        method.frame(camera, focal_px(camera), method.default_quality()));
             COPPICE_TRY(const FloatPicture picture, drawer_->picture(drawn, camera, 1));
             COPPICE_CHECK(shimmer.add(picture));
-            camera.yaw_rad += float(k_shimmer_step_px) / focal_px_;
+            camera.yaw_rad += float(k_shimmer_step_px) / focal_px(camera);
         }
         return shimmer.rms();
     }
@@ -359,7 +359,7 @@ class AccuracyBench {
         Progress progress("a view at rest", views_.size());
         for (uint32_t view = 0; view < views_.size(); ++view) {
             COPPICE_TRY(const DrawnFrame drawn,
-                        method.frame(views_[view], focal_px_, method.default_quality()));
+                        method.frame(views_[view], focal_px(views_[view]), method.default_quality()));
             double last_ms = 0.0;
             for (uint32_t frames = 1;
                  frames <= k_resting_frames && last_ms * k_resting_growth < k_resting_limit_ms;
@@ -378,6 +378,10 @@ class AccuracyBench {
         return {};
     }
 
+    float focal_px(const Camera& camera) const {
+        return make_frustum(camera, record_.width, record_.height).focal_px;
+    }
+
     static constexpr const char* k_default_method = "hybrid, measured";
 
     struct Truths {
@@ -394,7 +398,6 @@ class AccuracyBench {
     const ReferenceInterface* tracer_ = nullptr;
     std::vector<Camera> views_;
     std::vector<Truths> truths_;
-    float focal_px_ = 0.0f;
     AccuracyRecord record_;
 };
 
@@ -403,9 +406,9 @@ class AccuracyBench {
 Result<nlohmann::json> bench_accuracy(const BenchSettings& asked) {
     BenchSettings settings = asked;
     if (settings.out.empty()) settings.out = "out/accuracy-" + scene_stem(settings.scene);
+    if (settings.cache_dir.empty()) settings.cache_dir = default_cache_dir();
     COPPICE_TRY(AccuracyRecord record, AccuracyBench(settings).run());
-    record.command =
-        fmt::format("coppice bench accuracy --scene {} --size {}", settings.scene, settings.size);
+    record.command = command_line();
     const nlohmann::json json = accuracy_json(record);
     COPPICE_CHECK(write_text_file(settings.out + "/accuracy.json", json.dump(2) + "\n"));
     COPPICE_CHECK(write_text_file(settings.out + "/accuracy.csv", accuracy_csv(record)));

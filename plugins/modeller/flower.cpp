@@ -12,8 +12,8 @@ constexpr float k_golden_rad = 2.39996323f;
 
 struct Parts {
     PartBuilder stem{"stem", PartKind::lines, false};
-    PartBuilder leaves{"leaves", PartKind::points, true};
-    PartBuilder petals{"petals", PartKind::points, true};
+    PartBuilder leaves{"leaves", PartKind::automatic, true};
+    PartBuilder petals{"petals", PartKind::automatic, true};
     PartBuilder disc{"disc", PartKind::points, false};
 };
 

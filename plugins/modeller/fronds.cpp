@@ -123,7 +123,7 @@ void grow_crown(PartBuilder& rachis, PartBuilder& leaflets, const FrondParameter
 
 PlantDescription grow_palm(const PalmParameters& p, Random random) {
     PartBuilder trunk("trunk", PartKind::automatic, false), rachis("rachis", PartKind::lines, false),
-        leaflets("leaflets", PartKind::lines, true);
+        leaflets("leaflets", PartKind::automatic, true);
     Random own = random.fork(1);
     Frame frame = roll(Frame{}, own.next_in(0.0f, 2.0f * k_pi));
     frame = tilt(frame, p.trunk_lean_rad * own.next_around(1.0f, 0.4f));
@@ -159,7 +159,7 @@ PlantDescription grow_palm(const PalmParameters& p, Random random) {
 }
 
 PlantDescription grow_fern(const FrondParameters& p, Random random) {
-    PartBuilder rachis("rachis", PartKind::lines, false), leaflets("leaflets", PartKind::lines, true);
+    PartBuilder rachis("rachis", PartKind::lines, false), leaflets("leaflets", PartKind::automatic, true);
     grow_crown(rachis, leaflets, p, vec3(0), Frame{}, 2.0f * p.radius_m, random);
     PlantDescription plant;
     plant.parts.push_back(rachis.take());

@@ -61,7 +61,7 @@ void grow_stalk(PartBuilder& stalks, const GrassParameters& p, uint32_t index, R
 }  // namespace
 
 PlantDescription grow_grass(const GrassParameters& p, Random random) {
-    PartBuilder blades("blades", PartKind::lines, true), stalks("stalks", PartKind::lines, false);
+    PartBuilder blades("blades", PartKind::automatic, true), stalks("stalks", PartKind::lines, false);
     for (uint32_t i = 0; i < p.blades; ++i) grow_blade(blades, p, i, random.fork(1).fork(i));
     for (uint32_t i = 0; i < p.stalks; ++i) grow_stalk(stalks, p, i, random.fork(2).fork(i));
     PlantDescription plant;

@@ -114,8 +114,7 @@ Result<PlantDescription> grow_tree(const TreeParameters& parameters, const std::
         }
         each = weights > 0.0 ? left / double(placer.triangles_each()) / weights : 0.0;
     }
-    PartBuilder part(leaves.shape == LeafShape::needles ? "needles" : "leaves",
-                     leaves.shape == LeafShape::needles ? PartKind::lines : PartKind::points, true);
+    PartBuilder part(leaves.shape == LeafShape::needles ? "needles" : "leaves", PartKind::automatic, true);
     Crown crown = crown_of(parameters, tree);
     double due = 0.0, placed = 0.0;
     for (size_t i = 0; i < tree.stems.size(); ++i) {

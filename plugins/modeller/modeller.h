@@ -13,7 +13,7 @@ inline constexpr const char* k_modeller_interface = "coppice.modeller";
 inline constexpr uint32_t k_modeller_version = 1;  // of the interface below
 // Of what is grown; goes into the key of cached plants: raise it when an unchanged species file grows other
 // bytes.
-inline constexpr uint32_t k_growth_version = 2;
+inline constexpr uint32_t k_growth_version = 3;
 
 struct ModellerInterface {
     uint32_t size_bytes;

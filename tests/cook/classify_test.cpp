@@ -9,13 +9,15 @@
 namespace coppice {
 namespace {
 
-std::vector<SlenderPart> classify(PartDescription part) {
+std::vector<SlenderPart> classify(PartDescription part, LineParts line_parts = LineParts::stems) {
     std::vector<uint32_t> welded = weld_positions(part.vertices);
     bool closed = closed_share(part, welded) >= k_closed_share;
-    return classify_part(std::move(part), welded, closed);
+    return classify_part(std::move(part), welded, closed, line_parts);
 }
 
-PartKind kind_of(PartDescription part) { return classify(std::move(part)).at(0).part.kind; }
+PartKind kind_of(PartDescription part, LineParts line_parts = LineParts::stems) {
+    return classify(std::move(part), line_parts).at(0).part.kind;
+}
 
 PartDescription tube_of(float length_m, float radius_m) {
     PartDescription part;
@@ -31,7 +33,7 @@ TEST(ClassifyPart, LeavesAndFruitsBecomePoints) {
     EXPECT_EQ(kind_of(tube_of(1, 0.2f)), PartKind::points) << "a stump is not slender";
 }
 
-TEST(ClassifyPart, StemsNeedlesAndBladesBecomeLines) {
+TEST(ClassifyPart, SlenderStemsBecomeLinesAndSlenderLeavesWhereAskedFor) {
     EXPECT_EQ(kind_of(tube_of(1, 0.02f)), PartKind::lines);
     PartDescription needles;
     Random random(1);
@@ -41,6 +43,10 @@ TEST(ClassifyPart, StemsNeedlesAndBladesBecomeLines) {
                          along * 0.05f);
     }
     EXPECT_EQ(kind_of(needles), PartKind::lines);
+    needles.leaf = true;
+    EXPECT_EQ(kind_of(needles), PartKind::points);
+    EXPECT_EQ(kind_of(needles, LineParts::slender), PartKind::lines);
+    EXPECT_EQ(kind_of(tube_of(1, 0.02f), LineParts::none), PartKind::points);
 }
 
 TEST(ClassifyPart, AFewTwigsAmongLeavesDoNotDecide) {

@@ -121,15 +121,17 @@ std::vector<Hybrid> hybrids() {
     CookSettings shuffled;
     shuffled.order = PrefixOrder::shuffled;
     CookSettings points;
-    points.lines = false;
+    points.lines = LineParts::none;
+    CookSettings leaf_lines;
+    leaf_lines.lines = LineParts::slender;
     return {
         {"hybrid, measured", "Points, lines and triangles by measured projections: the program's defaults.",
          FrameSettings{}, std::nullopt, true},
         {"hybrid, isotropic",
          "The paper's hybrid with pi/4 of the lines' length for any direction, splat factor 1.3.", isotropic,
-         std::nullopt},
+         leaf_lines},
         {"hybrid, printed", "The paper's hybrid, its formulas as printed, splat factor 1.3.", printed,
-         std::nullopt},
+         leaf_lines},
         {"hybrid, unfiltered", "The defaults, but each pixel shows its own sample alone.", unfiltered,
          std::nullopt},
         {"hybrid, equal splats", "The defaults, but splats of one size, however they face.", alike,
@@ -140,6 +142,8 @@ std::vector<Hybrid> hybrids() {
          FrameSettings{}, shuffled},
         {"points only", "The defaults, but stems turn into points as leaves do: no lines.", FrameSettings{},
          points},
+        {"lines for needles", "The defaults, but needles and blades turn into lines, as in the paper.",
+         FrameSettings{}, leaf_lines},
     };
 }
 

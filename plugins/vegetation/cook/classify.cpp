@@ -31,9 +31,14 @@ double slender_share(const PartDescription& part, const TracedSkeleton& skeleton
 
 }  // namespace
 
-std::vector<SlenderPart> classify_part(PartDescription part, const std::vector<uint32_t>& welded,
-                                       bool closed) {
+std::vector<SlenderPart> classify_part(PartDescription part, const std::vector<uint32_t>& welded, bool closed,
+                                       LineParts line_parts) {
     SlenderPart whole;
+    const bool may_be_lines =
+        part.kind == PartKind::lines ||
+        (part.kind == PartKind::automatic &&
+         (part.leaf ? line_parts == LineParts::slender : line_parts != LineParts::none));
+    part.kind = may_be_lines && line_parts != LineParts::none ? part.kind : PartKind::points;
     if (part.kind != PartKind::points) {
         bool has_skeleton = !part.skeleton.empty();
         whole.skeleton = has_skeleton ? adopt_skeleton(part) : trace_skeleton(part, welded);

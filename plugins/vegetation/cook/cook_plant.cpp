@@ -246,7 +246,7 @@ uint64_t hash_settings(const CookSettings& settings) {
     hash = hash_combine(hash, uint64_t(settings.order));
     hash = hash_combine(hash, std::bit_cast<uint32_t>(settings.points_per_triangle));
     hash = hash_combine(hash, settings.seed);
-    return hash_combine(hash, settings.lines);
+    return hash_combine(hash, uint64_t(settings.lines));
 }
 
 Result<std::vector<std::byte>> cook_plant(const PlantDescription& plant, const CookSettings& settings) {
@@ -263,7 +263,6 @@ Result<std::vector<std::byte>> cook_plant(const PlantDescription& plant, const C
         std::string place = fmt::format("parts[{}] \"{}\"", i, plant.parts[i].name);
         COPPICE_TRY(PartDescription mesh, clean_mesh(plant.parts[i], plant.name, place, dropped));
         triangle_count += mesh.indices.size() / 3;
-        if (!settings.lines) mesh.kind = PartKind::points;
         if (!mesh.indices.empty()) meshes.push_back(std::move(mesh));
     }
     if (meshes.empty())
@@ -291,7 +290,7 @@ Result<std::vector<std::byte>> cook_plant(const PlantDescription& plant, const C
     std::vector<CookPart> parts;
     for (size_t i = 0; i < meshes.size(); ++i) {
         uint64_t steps = meshes[i].indices.size() / 3;
-        for (SlenderPart& shape : classify_part(std::move(meshes[i]), welded[i], closed[i])) {
+        for (SlenderPart& shape : classify_part(std::move(meshes[i]), welded[i], closed[i], settings.lines)) {
             CookPart part{std::move(shape), closed[i]};
             std::tie(part.area_m2, part.mean_color_linear) = measure_area_and_color(part.shape.part);
             parts.push_back(std::move(part));

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <string>
 #include <vector>
+#include "plugins/vegetation/cook/classify.h"
 #include "plugins/vegetation/cook/sample_points.h"
 #include "plugins/vegetation/plant/description.h"
 #include "runtime/core/result.h"
@@ -14,13 +15,13 @@
 namespace coppice {
 
 // Goes into the key of cached plants: raise it when the bytes of an unchanged description change.
-inline constexpr uint32_t k_cook_version = 6;
+inline constexpr uint32_t k_cook_version = 7;
 
 struct CookSettings {
     PointSampler sampler = PointSampler::automatic;
     PrefixOrder order = PrefixOrder::progressive;
     float points_per_triangle = 2.0f;  // (0, 64]; the paper's 2
-    bool lines = true;                 // false: every part becomes points, whatever its shape or author says
+    LineParts lines = LineParts::stems;
     uint64_t seed = 1;
     // These two say nothing of what comes out, and are not hashed.
     uint32_t primitive_limit =

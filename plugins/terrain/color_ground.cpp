@@ -1,7 +1,7 @@
 #include "plugins/terrain/color_ground.h"
 
 #include <algorithm>
-#include "plugins/terrain/noise.h"
+#include "plugins/shared/noise.h"
 #include "runtime/core/jobs.h"
 
 namespace coppice {

@@ -3,7 +3,7 @@
 #pragma once
 #include <vector>
 #include "plugins/terrain/height_field.h"
-#include "plugins/terrain/region.h"
+#include "plugins/shared/region.h"
 
 namespace coppice {
 

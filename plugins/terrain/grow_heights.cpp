@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include "plugins/terrain/build_patches.h"
-#include "plugins/terrain/noise.h"
+#include "plugins/shared/noise.h"
 #include "runtime/core/jobs.h"
 
 namespace coppice {

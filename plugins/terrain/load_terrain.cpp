@@ -7,8 +7,8 @@
 #include "plugins/terrain/build_patches.h"
 #include "plugins/terrain/color_ground.h"
 #include "plugins/terrain/grow_heights.h"
-#include "plugins/terrain/json_object.h"
-#include "plugins/terrain/noise.h"
+#include "plugins/shared/json_object.h"
+#include "plugins/shared/noise.h"
 #include "plugins/terrain/read_heights.h"
 
 namespace coppice {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <fmt/format.h>
-#include "plugins/terrain/region.h"
+#include "plugins/shared/region.h"
 #include "plugins/vegetation/eco/ground_height.h"
 #include "runtime/core/file.h"
 

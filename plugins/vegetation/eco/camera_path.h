@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 #include <vector>
-#include "plugins/terrain/json_object.h"
+#include "plugins/shared/json_object.h"
 #include "plugins/vegetation/eco/scene.h"
 
 namespace coppice {

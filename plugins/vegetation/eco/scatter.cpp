@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
-#include "plugins/terrain/noise.h"
+#include "plugins/shared/noise.h"
 #include "plugins/vegetation/eco/ground_height.h"
 #include "runtime/core/jobs.h"
 #include "runtime/core/random.h"

@@ -4,7 +4,7 @@
 #pragma once
 #include <string>
 #include <vector>
-#include "plugins/terrain/region.h"
+#include "plugins/shared/region.h"
 #include "plugins/terrain/terrain.h"
 #include "plugins/vegetation/eco/place.h"
 #include "runtime/core/result.h"

@@ -1,4 +1,4 @@
-#include "plugins/terrain/region.h"
+#include "plugins/shared/region.h"
 
 #include <fmt/format.h>
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 #include <glm/vec2.hpp>
-#include "plugins/terrain/json_object.h"
+#include "plugins/shared/json_object.h"
 
 namespace coppice {
 

@@ -1,4 +1,4 @@
-#include "plugins/terrain/json_object.h"
+#include "plugins/shared/json_object.h"
 
 #include <algorithm>
 #include <fmt/format.h>

@@ -29,7 +29,9 @@ class RasterTest : public ::testing::Test {
         camera_.vertical_fov_rad = 1.5707963f;  // focal length 128 px: at 128 m a metre is a pixel
     }
     void TearDown() override {
-        if (device_) EXPECT_EQ(device_->validation_messages(), 0u);
+        if (device_) {
+            EXPECT_EQ(device_->validation_messages(), 0u);
+        }
     }
 
     // Where column x, row y (pixels, fractions allowed) lies at distance z.

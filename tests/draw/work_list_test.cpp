@@ -37,7 +37,9 @@ TEST(WorkList, EveryPrimitiveStandsInOneEntry) {
         WorkRange range = lane ? layout.lanes[kind] : layout.groups[kind];
         for (uint32_t e = range.first_entry; e < range.first_entry + range.entry_count; ++e) {
             EXPECT_LT(entries[e].instance, layout.instance_count);
-            if (lane) EXPECT_LE(entries[e].count, k_primitives_a_lane);
+            if (lane) {
+                EXPECT_LE(entries[e].count, k_primitives_a_lane);
+            }
             for (uint32_t i = 0; i < entries[e].count; ++i) found.insert(entries[e].first_vertex + i);
         }
     }

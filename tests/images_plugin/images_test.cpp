@@ -122,6 +122,9 @@ TEST_F(Images, FloatsThereAndBackAreExact) {
         ASSERT_TRUE(back) << to_string(back.error());
         EXPECT_EQ(back->rgb, picture.rgb) << name;
     }
+    const auto exr = read_text_file(folder_ / "a.exr");
+    ASSERT_TRUE(exr) << to_string(exr.error());
+    EXPECT_NE(exr->find("1970:01:01"), exr->npos) << "the file carries the time it was written";
 }
 
 TEST_F(Images, TruncatedAndDamagedFilesAreRefusedOrRead) {

@@ -76,7 +76,7 @@ TEST(BenchAccuracy, APictureSizeThatCannotBeMeantIsAUsageError) {
     const std::string folder = fresh_folder();
     write_scene(folder);
     for (const char* size : {"0x0", "64", "64x", "-64x48", "64x99999"})
-        expect_failure(bench(folder, {"--size", size}), 2, {size, "1280x720"});
+        expect_failure(bench(folder, {"--size", size}), 2, {"--size", size, "1280x720"});
 }
 
 TEST(BenchAccuracy, ASceneWithoutPlantsHasNothingToMeasure) {

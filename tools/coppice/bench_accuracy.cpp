@@ -126,7 +126,7 @@ class AccuracyBench {
             settings_.scene.find('/') == std::string::npos && settings_.scene.find('.') == std::string::npos
                 ? fmt::format("{}/scenes/{}.eco.json", settings_.content, settings_.scene)
                 : settings_.scene;
-        COPPICE_CHECK(parse_size(settings_.size, options.width, options.height));
+        COPPICE_CHECK(parse_size("--size", settings_.size, options.width, options.height));
         options.headless = true;
         options.keep_scene = true;
         options.device = settings_.device;

@@ -61,7 +61,7 @@ Status run(PlayCommand command) {
                         "add --headless 1280x720 --out DIR");
         return play_in_window(options);
     }
-    COPPICE_CHECK(parse_size(command.headless, options.width, options.height));
+    COPPICE_CHECK(parse_size("--headless", command.headless, options.width, options.height));
     COPPICE_CHECK(chosen_frames(options.pictures, 1));
     if (!options.out.empty()) COPPICE_CHECK(make_folder(options.out));
     COPPICE_TRY(std::unique_ptr<PlayHost> host, PlayHost::create(options));

@@ -16,13 +16,13 @@ bool parse_number(std::string_view text, uint32_t& number) {
 
 }  // namespace
 
-Status parse_size(const std::string& text, uint32_t& width, uint32_t& height) {
+Status parse_size(const char* option, const std::string& text, uint32_t& width, uint32_t& height) {
     size_t cross = text.find('x');
     std::string_view view = text;
     if (cross == std::string::npos || !parse_number(view.substr(0, cross), width) ||
         !parse_number(view.substr(cross + 1), height) || width == 0 || height == 0 ||
         width > k_picture_side_limit || height > k_picture_side_limit)
-        return fail(ErrorId::usage, "", "--headless", fmt::format("'{}' is not a picture size", text),
+        return fail(ErrorId::usage, "", option, fmt::format("'{}' is not a picture size", text),
                     "write WIDTHxHEIGHT, each from 1 to 16384, as in 1280x720");
     return {};
 }

@@ -30,7 +30,7 @@ struct PlayOptions {
 };
 
 // "1280x720". Errors: usage.
-Status parse_size(const std::string& text, uint32_t& width, uint32_t& height);
+Status parse_size(const char* option, const std::string& text, uint32_t& width, uint32_t& height);
 
 // "0,30,60": these frames; "4": so many, evenly spread, the first and the last among them; "0": none.
 // Sorted, without doubles, all below frame_count (others are left out). Errors: usage.

@@ -148,6 +148,13 @@ TEST(LoadPlant, RefusesValuesNoPlantCanHave) {
     EXPECT_EQ(id_of(load_changed([](PlantBlocks& b) { b.parts[0].triangle_count = UINT32_MAX; })), k_wrong);
     EXPECT_EQ(id_of(load_changed([](PlantBlocks& b) { b.parts[1].first_line = UINT32_MAX; })), k_wrong);
     EXPECT_EQ(id_of(load_changed([](PlantBlocks& b) { b.parts[0].projected_area_m2.m[5] = NAN; })), k_wrong);
+    EXPECT_EQ(id_of(load_changed([](PlantBlocks& b) { b.parts[0].bounds_min[1] = NAN; })), k_wrong);
+    EXPECT_EQ(id_of(load_changed([](PlantBlocks& b) { b.parts[0].bounds_max[2] = 1.001e5f; })), k_wrong);
+    EXPECT_EQ(id_of(load_changed([](PlantBlocks& b) {
+                  b.parts[0].bounds_min[0] = 1.0f;
+                  b.parts[0].bounds_max[0] = 0.5f;
+              })),
+              k_wrong);
     EXPECT_EQ(id_of(load_changed([](PlantBlocks& b) { b.line_vertices.pop_back(); })), k_wrong);
     EXPECT_EQ(id_of(load_changed([](PlantBlocks& b) { b.bounds_plant = Box{}; })), k_wrong);
     EXPECT_EQ(id_of(load_changed([](PlantBlocks& b) { std::memset(b.parts[0].name, 'x', 32); })), k_wrong);

@@ -5,6 +5,7 @@
 #include <optional>
 #include <tuple>
 #include <fmt/format.h>
+#include "plugins/vegetation/cook/build_octree.h"
 #include "plugins/vegetation/cook/classify.h"
 #include "plugins/vegetation/cook/clean_mesh.h"
 #include "plugins/vegetation/cook/closed_share.h"
@@ -33,23 +34,11 @@ PackedVertex pack_vertex(vec3 position, const Surface& surface, uint32_t dither)
     return {position.x, position.y, position.z, encode_surface(surface, dither)};
 }
 
-std::pair<double, vec3> measure_area_and_color(const PartDescription& mesh) {
-    std::vector<double> areas = triangle_areas(mesh);
-    dvec3 color(0);
-    double area_m2 = 0.0;
-    for (size_t t = 0; t < areas.size(); ++t) {
-        area_m2 += areas[t];
-        for (size_t k = 0; k < 3; ++k)
-            color += dvec3(mesh.vertices[mesh.indices[3 * t + k]].color_linear) * (areas[t] / 3.0);
-    }
-    return {area_m2, vec3(color * (1.0 / area_m2))};
-}
-
 SampleSettings sample_settings(const CookSettings& settings, uint64_t seed) {
     return {settings.sampler, settings.order, settings.points_per_triangle, seed};
 }
 
-// Appends one part to the plant. seed: of this part.
+// Appends one part, or one cell of a part, to the plant, but for its coverage gain. seed: of this one.
 class PartPacker {
   public:
     PartPacker(const CookPart& part, float importance, const OpennessGrid& openness,
@@ -86,10 +75,6 @@ class PartPacker {
             packed_.bounds_min[axis] = bounds_.min[axis];
             packed_.bounds_max[axis] = bounds_.max[axis];
         }
-        packed_.coverage_gain = measure_coverage_gain(
-            packed_, std::span(plant_.triangle_vertices).subspan(3 * size_t(packed_.first_triangle)),
-            std::span(plant_.points).subspan(packed_.first_point),
-            std::span(plant_.line_vertices).subspan(2 * size_t(packed_.first_line)));
         plant_.bounds_plant.include(bounds_);
         plant_.parts.push_back(packed_);
         return {};
@@ -239,6 +224,21 @@ class PartPacker {
     std::vector<uint32_t> curve_, triangle_order_;  // indices of the mesh's triangles
 };
 
+// Of the plant's last parts, the cells of one part or the part alone: measured together, because cells hide one another
+// as the part's pieces do, and drawn far away must cover together what the part covers.
+void set_coverage_gain(PlantBlocks& plant, size_t first_part) {
+    const std::span<PackedPart> cells = std::span(plant.parts).subspan(first_part);
+    const PackedPart& first = cells.front();
+    const auto gain = measure_coverage_gain(
+        cells, std::span(plant.triangle_vertices).subspan(3 * size_t(first.first_triangle)),
+        std::span(plant.points).subspan(first.first_point),
+        std::span(plant.line_vertices).subspan(2 * size_t(first.first_line)));
+    for (PackedPart& cell : cells) {
+        cell.coverage_gain = gain;
+        if (cells.size() > 1) cell.flags |= k_part_cell;
+    }
+}
+
 }  // namespace
 
 uint64_t hash_settings(const CookSettings& settings) {
@@ -303,22 +303,30 @@ Result<std::vector<std::byte>> cook_plant(const PlantDescription& plant, const C
         parts = merge_parts(std::move(parts));
     }
 
-    uint64_t point_count = 0;
     std::vector<ColoredArea> colors;
-    for (const CookPart& part : parts) {
-        const PartDescription& mesh = part.shape.part;
-        if (mesh.kind == PartKind::points) point_count += count_points(mesh, sample_settings(settings, 0));
-        colors.push_back({part.mean_color_linear, part.area_m2, mesh.importance});
-    }
+    for (const CookPart& part : parts)
+        colors.push_back({part.mean_color_linear, part.area_m2, part.shape.part.importance});
+    std::vector<float> importance = choose_importance(colors);
+    std::vector<std::vector<CookPart>> cells_of_part = build_octree(std::move(parts));
+    uint64_t point_count = 0;
+    for (const auto& cells : cells_of_part)
+        for (const CookPart& cell : cells)
+            if (cell.shape.part.kind == PartKind::points)
+                point_count += count_points(cell.shape.part, sample_settings(settings, 0));
     if (point_count > settings.primitive_limit)
         return fail(ErrorId::limit_exceeded, plant.name, "", fmt::format("{} points", point_count),
                     fmt::format("at most {} a plant: fewer points a triangle", settings.primitive_limit));
-    std::vector<float> importance = choose_importance(colors);
-    for (size_t i = 0; i < parts.size(); ++i) {
-        COPPICE_CHECK(
-            PartPacker(parts[i], importance[i], openness, settings, hash_combine(settings.seed, i), blocks)
-                .run());
-        advance(parts[i].shape.part.indices.size() / 3);
+    for (size_t i = 0; i < cells_of_part.size(); ++i) {
+        const uint64_t seed = hash_combine(settings.seed, i);
+        const std::vector<CookPart>& cells = cells_of_part[i];
+        const size_t first_part = blocks.parts.size();
+        for (size_t c = 0; c < cells.size(); ++c) {
+            COPPICE_CHECK(PartPacker(cells[c], importance[i], openness, settings,
+                                     cells.size() > 1 ? hash_combine(seed, c) : seed, blocks)
+                              .run());
+            advance(cells[c].shape.part.indices.size() / 3);
+        }
+        set_coverage_gain(blocks, first_part);
     }
     return pack_plant(blocks);
 }

@@ -18,4 +18,16 @@ std::vector<double> triangle_areas(const PartDescription& part) {
     return areas;
 }
 
+std::pair<double, vec3> measure_area_and_color(const PartDescription& part) {
+    std::vector<double> areas = triangle_areas(part);
+    dvec3 color(0);
+    double area_m2 = 0.0;
+    for (size_t t = 0; t < areas.size(); ++t) {
+        area_m2 += areas[t];
+        for (size_t k = 0; k < 3; ++k)
+            color += dvec3(part.vertices[part.indices[3 * t + k]].color_linear) * (areas[t] / 3.0);
+    }
+    return {area_m2, vec3(color * (1.0 / area_m2))};
+}
+
 }  // namespace coppice

@@ -64,8 +64,11 @@ const char* fault_of_part(const PackedPart& part, const Plant& plant, PartBegin&
         part.point_radius_m, part.mean_color_linear[0], part.mean_color_linear[1], part.mean_color_linear[2]};
     for (float measure : measures)
         if (!(measure >= 0.0f) || !std::isfinite(measure)) return "a negative or infinite measure";
-    if (!all_finite(part.bounds_min) || !all_finite(part.bounds_max) ||
-        !all_finite(part.projected_area_m2.m) || !all_finite(part.projected_length_m.m))
+    for (int axis = 0; axis < 3; ++axis)
+        if (!(part.bounds_min[axis] >= -k_position_limit_m &&
+              part.bounds_min[axis] <= part.bounds_max[axis] && part.bounds_max[axis] <= k_position_limit_m))
+            return "bounds that are no box within 100 km of the origin";
+    if (!all_finite(part.projected_area_m2.m) || !all_finite(part.projected_length_m.m))
         return "a value that is not finite";
     for (float gain : part.coverage_gain)
         if (!(gain > 0.0f) || !std::isfinite(gain)) return "a coverage gain that is not positive";

@@ -191,10 +191,10 @@ TEST(Scatter, ObeysTheTerrain) {
     ScatterSettings settings = over(rectangle(256, 256));
     settings.terrain = terrain.get();
     settings.density_per_m2 = 0.2;
-    settings.slope_most_rad = 0.3f;
-    settings.altitude_low_m = 0.0f;
+    settings.rule.slope_most_rad = 0.3f;
+    settings.rule.altitude_low_m = 0.0f;
     settings.edge_m = 20.0f;
-    settings.align_to_ground = 1.0f;
+    settings.rule.align_to_ground = 1.0f;
     auto plants = run(settings);
     EXPECT_GT(plants.size(), 500u);
     EXPECT_LT(plants.size(), 9000u);

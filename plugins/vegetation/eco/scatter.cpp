@@ -25,8 +25,7 @@ struct Spot {
 // Whether a plant may stand somewhere, and which it is.
 class Ground {
   public:
-    explicit Ground(const ScatterSettings& settings) : s_(settings) {
-        slope_least_up_ = s_.slope_most_rad < k_pi * 0.5f ? portable_cos(s_.slope_most_rad) : -1.0f;
+    explicit Ground(const ScatterSettings& settings) : s_(settings), least_up_(settings.rule.least_up()) {
         for (const ScatterSpecies& species : s_.species) total_weight_ += species.weight;
     }
 
@@ -38,9 +37,8 @@ class Ground {
         if (s_.noisy && density > chance) density *= noise_density(p);
         if (!(density > chance)) return false;
         if (!s_.exclude.shapes.empty() && s_.exclude.contains(p)) return false;
-        if (slope_least_up_ > 0.0f && normal_at(p).y < slope_least_up_) return false;
-        double y = height_at(p);
-        return y >= double(s_.altitude_low_m) && y <= double(s_.altitude_high_m);
+        if (least_up_ > 0.0f && normal_at(p).y < least_up_) return false;
+        return s_.rule.takes_height(height_at(p));
     }
 
     Placement plant_at(const Spot& spot) const {
@@ -62,11 +60,7 @@ class Ground {
         float lean = s_.lean_most_rad * random.next_unit();
         vec3 tip(portable_cos(bearing) * portable_sin(lean), portable_cos(lean),
                  portable_sin(bearing) * portable_sin(lean));
-        if (s_.align_to_ground > 0.0f) {
-            vec3 normal = normal_at(spot.at);
-            tip = normalize_or(tip + vec3(normal.x, normal.y - 1.0f, normal.z) * s_.align_to_ground,
-                               vec3(0, 1, 0));
-        }
+        if (s_.rule.align_to_ground > 0.0f) tip = s_.rule.tip(tip, normal_at(spot.at));
         vec3 towards = normalize_or(vec3(tip.x, 0.0f, tip.z), vec3(1, 0, 0));
         plant.turn = make_turn(turn, portable_acos(tip.y), towards);
         return plant;
@@ -84,7 +78,7 @@ class Ground {
     vec3 normal_at(dvec2 p) const { return ground_normal(s_.terrain, p.x, p.y); }
 
     const ScatterSettings& s_;
-    float slope_least_up_, total_weight_ = 0.0f;
+    float least_up_, total_weight_ = 0.0f;
 };
 
 // The region's box cut into square cells, each with the spots found in it.

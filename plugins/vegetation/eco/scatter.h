@@ -6,6 +6,7 @@
 #include <vector>
 #include "plugins/shared/region.h"
 #include "plugins/terrain/terrain.h"
+#include "plugins/vegetation/eco/ground_rule.h"
 #include "plugins/vegetation/eco/place.h"
 #include "runtime/core/result.h"
 
@@ -41,11 +42,9 @@ struct ScatterSettings {
     double spacing_m = 0.0;  // least distance between two plants of this scatter; not of a grid
     float scale_low = 1.0f, scale_high = 1.0f;
     float height_low_m = 0.0f,
-          height_high_m = 0.0f;    // instead of scale, where the kind's height is known; 0: unused
-    float lean_most_rad = 0.0f;    // any direction, any angle up to it
-    float align_to_ground = 0.0f;  // [0, 1]: 1 stands at right angles to the slope
-    float slope_most_rad = k_pi;
-    float altitude_low_m = -INFINITY, altitude_high_m = INFINITY;
+          height_high_m = 0.0f;  // instead of scale, where the kind's height is known; 0: unused
+    float lean_most_rad = 0.0f;  // any direction, any angle up to it
+    GroundRule rule;
     bool noisy = false;
     DensityNoise noise;
     uint64_t seed = 1;

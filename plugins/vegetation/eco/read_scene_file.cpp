@@ -1,0 +1,251 @@
+#include <filesystem>
+#include <fmt/format.h>
+#include "plugins/vegetation/eco/camera_path.h"
+#include "plugins/vegetation/eco/ground_height.h"
+#include "plugins/vegetation/eco/read_placements_csv.h"
+#include "plugins/vegetation/eco/read_references.h"
+#include "plugins/vegetation/eco/read_scatter.h"
+#include "plugins/vegetation/eco/scene_file.h"
+#include "runtime/core/file.h"
+#include "runtime/core/hash.h"
+#include "runtime/core/log.h"
+#include "runtime/core/random.h"
+
+namespace coppice {
+namespace {
+
+constexpr float k_radians = k_pi / 180.0f;
+constexpr uint64_t k_variation_limit = 1024;
+
+class SceneReader {
+  public:
+    SceneReader(JsonDocument& document, const std::string& path, const SceneLoadSettings& settings,
+                SceneRole role)
+        : document_(document), root_(document, document.root(), ""), settings_(settings), role_(role) {
+        scene_.path = path;
+        folder_ = std::filesystem::path(path).parent_path();
+    }
+
+    Result<SceneFile> read() {
+        scene_.name = root_.text("name", std::filesystem::path(scene_.path).stem().stem().string());
+        scene_.sample_distance_px = root_.real("sample_distance_px", 0.01f, 1000.0f, 1.0f);
+        // A scene may consist of other scenes alone.
+        const bool refers = root_.has("references");
+        if (!refers || root_.has("plants")) read_plants(root_.object("plants"));
+        read_regions();
+        read_light();
+        const nlohmann::json* terrain = root_.find("terrain");
+        std::vector<JsonObject> placements;
+        if (!refers || root_.has("placements")) placements = root_.objects("placements");
+        if (refers) file_.references = read_references(root_.objects("references"), folder_);
+        const nlohmann::json* camera_path = root_.find("camera_path");
+        root_.close();
+        COPPICE_CHECK(document_.status());
+        if (role_ == SceneRole::referenced)
+            note_what_is_left_out();
+        else if (terrain)
+            COPPICE_CHECK(load_terrain(*terrain));
+        for (JsonObject& entry : placements) COPPICE_CHECK(read_placement(entry));
+        if (role_ == SceneRole::root) COPPICE_CHECK(read_camera_path(camera_path));
+        return std::move(file_);
+    }
+
+  private:
+    void note_what_is_left_out() {
+        std::string keys;
+        for (const char* key :
+             {"terrain", "sun", "sky", "haze", "exposure", "camera_path", "sample_distance_px"})
+            if (root_.has(key)) keys += (keys.empty() ? "" : ", ") + std::string(key);
+        if (!keys.empty()) log_note("{}: {} left out, because another scene refers to it", scene_.path, keys);
+    }
+
+    std::string resolve(const std::string& name) const {
+        return (folder_ / name).lexically_normal().string();
+    }
+
+    void read_plants(JsonObject object) {
+        const nlohmann::json* plants = root_.find("plants");
+        if (!plants || !plants->is_object()) return;
+        for (const auto& [name, ignored] : plants->items()) {
+            JsonObject entry = object.object(name.c_str());
+            PlantKind kind;
+            kind.first_model = uint32_t(scene_.models.size());
+            std::string source = entry.text("source");
+            kind.variation_count = uint32_t(entry.whole("variations", 1, k_variation_limit, 1));
+            kind.height_m = entry.real("height_m", 0.001f, 1000.0f, 0.0f);
+            float importance = entry.real("importance", 0.001f, 1000.0f, 1.0f);
+            entry.close();
+            if (kind.variation_count > 1 && !source.ends_with(".json"))
+                entry.report(ErrorId::value_out_of_range, "variations", "a model file has one shape",
+                             "variations of a species file, or leave it out");
+            if (scene_.models.size() + kind.variation_count > k_model_limit)
+                entry.report(ErrorId::limit_exceeded, "variations", "too many models",
+                             fmt::format("at most {} in all", k_model_limit));
+            if (!document_.sound()) return;
+            for (uint32_t v = 0; v < kind.variation_count; ++v)
+                scene_.models.push_back({name, resolve(source), v, importance});
+            names_.kinds[name] = kind;
+        }
+    }
+
+    void read_regions() {
+        const nlohmann::json* regions = root_.find("regions");
+        if (!regions) return;
+        JsonObject object = root_.object("regions");
+        if (!document_.sound()) return;
+        // Names refer to shapes only, never to each other: nothing can be circular.
+        for (const auto& [name, value] : regions->items())
+            names_.regions[name] = read_region(document_, value, object.place_of(name.c_str()));
+    }
+
+    void read_light() {
+        Light& light = scene_.light;
+        if (const nlohmann::json* sun = root_.find("sun"); sun && sun->is_null()) {
+            light.direction_to_sun = vec3(0.0f);
+        } else if (sun) {
+            JsonObject object = root_.object("sun");
+            float azimuth = object.real("azimuth_deg", -360.0f, 360.0f, 137.0f) * k_radians;
+            float elevation = object.real("elevation_deg", -90.0f, 90.0f, 49.0f) * k_radians;
+            light.direction_to_sun =
+                vec3(portable_sin(azimuth) * portable_cos(elevation), portable_sin(elevation),
+                     -portable_cos(azimuth) * portable_cos(elevation));
+            light.sun_color = object.color("color", 100.0f, light.sun_color);
+            object.close();
+        }
+        if (root_.has("sky")) {
+            JsonObject object = root_.object("sky");
+            light.sky_zenith_color = object.color("zenith", 100.0f, light.sky_zenith_color);
+            light.sky_horizon_color = object.color("horizon", 100.0f, light.sky_horizon_color);
+            light.ground_color = object.color("ground", 100.0f, light.ground_color);
+            object.close();
+        }
+        if (root_.has("haze")) {
+            JsonObject object = root_.object("haze");
+            light.haze_color = object.color("color", 100.0f, light.haze_color);
+            light.haze_density_per_m = object.real("density_per_m", 0.0f, 10.0f, light.haze_density_per_m);
+            object.close();
+        }
+        light.exposure = root_.real("exposure", 0.001f, 1000.0f, 1.0f);
+    }
+
+    Status load_terrain(const nlohmann::json& terrain) {
+        if (!settings_.terrain)
+            return fail(ErrorId::name_unknown, scene_.path, "terrain", "the terrain plugin is not loaded",
+                        "install it, or take \"terrain\" out of the scene");
+        COPPICE_TRY(scene_.terrain, settings_.terrain->load(terrain.dump(), folder_.string(), scene_.path));
+        return {};
+    }
+
+    Status add(std::vector<Placement> more, const std::string& place, const GroundRule& rule = {}) {
+        plant_count_ += more.size();
+        if (plant_count_ > k_plant_limit)
+            return fail(ErrorId::limit_exceeded, scene_.path, place,
+                        fmt::format("{} plants with those before", plant_count_),
+                        fmt::format("at most {} in a scene", k_plant_limit));
+        std::vector<PlantGroup>& groups = file_.groups;
+        if (groups.empty() || groups.back().rule != rule)
+            groups.push_back({std::move(more), rule});
+        else
+            groups.back().plants.insert(groups.back().plants.end(), more.begin(), more.end());
+        return {};
+    }
+
+    Status read_placement(JsonObject& entry) {
+        size_t kind = entry.one_of({"plant", "csv", "scatter"});
+        COPPICE_CHECK(document_.status());
+        if (kind == 0) return read_single(entry);
+        if (kind == 1) return read_csv(entry);
+        JsonObject object = entry.object("scatter");
+        entry.close();
+        ScatterSettings settings = read_scatter(object, names_, scene_.terrain.get());
+        COPPICE_CHECK(document_.status());
+        GroundRule rule;
+        if (role_ == SceneRole::referenced) std::swap(rule, settings.rule);
+        COPPICE_TRY(std::vector<Placement> plants, scatter(settings, scene_.path, entry.place_of("scatter")));
+        return add(std::move(plants), entry.place_of("scatter"), rule);
+    }
+
+    Status read_single(JsonObject& entry) {
+        const PlantKind* kind = names_.find_kind(entry, "plant", entry.text("plant"));
+        Placement plant;
+        const nlohmann::json* at = entry.find("at");
+        if (at && at->is_array() && at->size() == 2) {
+            auto xz = entry.numbers("at", 2, -k_farthest_m, k_farthest_m);
+            plant.position_world = dvec3(xz[0], ground_height(scene_.terrain.get(), xz[0], xz[1]), xz[1]);
+        } else {
+            auto xyz = entry.numbers("at", 3, -k_farthest_m, k_farthest_m);
+            plant.position_world = dvec3(xyz[0], xyz[1], xyz[2]);
+        }
+        Random random(hash_text("placement"), plant_count_);
+        float turn = entry.real("turn_deg", -360.0f, 360.0f, random.next_unit() * 360.0f) * k_radians;
+        float tilt = entry.real("tilt_deg", 0.0f, 180.0f, 0.0f) * k_radians;
+        float bearing = entry.real("tilt_towards_deg", -360.0f, 360.0f, 0.0f) * k_radians;
+        plant.turn = make_turn(turn, tilt, vec3(portable_sin(bearing), 0.0f, -portable_cos(bearing)));
+        plant.scale = entry.real("scale", k_scale_least, k_scale_most, 1.0f);
+        uint32_t variations = kind ? kind->variation_count : 1;
+        uint64_t variation = entry.whole("variation", 0, variations - 1, random.next_below(variations));
+        entry.close();
+        COPPICE_CHECK(document_.status());
+        plant.model = {kind->first_model + uint32_t(variation), uint32_t(random.next_bits() >> 32)};
+        return add({plant}, entry.place_of("plant"));
+    }
+
+    Status read_csv(JsonObject& entry) {
+        CsvSettings settings;
+        std::string name = entry.text("csv");
+        auto offset = entry.numbers("offset", 2, -2.0 * k_farthest_m, 2.0 * k_farthest_m,
+                                    std::vector<double>{0.0, 0.0});
+        settings.offset = dvec2(offset[0], offset[1]);
+        read_scale_range(entry, settings.scale_low, settings.scale_high);
+        settings.seed = entry.whole("seed", 0, UINT64_MAX, 1);
+        settings.kinds = names_.kinds;
+        settings.terrain = scene_.terrain.get();
+        if (const nlohmann::json* species = entry.find("species")) {
+            JsonObject map = entry.object("species");  // {"name in the file": "plant"}
+            if (!document_.sound()) return document_.status();
+            for (const auto& [alias, ignored] : species->items())
+                if (const PlantKind* kind = names_.find_kind(map, alias.c_str(), map.text(alias.c_str())))
+                    settings.kinds[alias] = *kind;
+        }
+        entry.close();
+        COPPICE_CHECK(document_.status());
+        COPPICE_TRY(std::vector<Placement> plants, read_placements_csv(resolve(name), settings));
+        return add(std::move(plants), entry.place_of("csv"));
+    }
+
+    Status read_camera_path(const nlohmann::json* value) {
+        if (value && value->is_string()) {
+            COPPICE_TRY(scene_.camera_path,
+                        load_camera_path(resolve(value->get<std::string>()), scene_.terrain.get()));
+            return {};
+        }
+        if (value) scene_.camera_path = read_camera_keys(root_.objects("camera_path"), scene_.terrain.get());
+        if (scene_.camera_path.empty()) {
+            Camera camera;
+            camera.position_world.y += ground_height(scene_.terrain.get(), 0.0, 0.0);
+            scene_.camera_path.push_back({0.0, camera});
+        }
+        return document_.status();
+    }
+
+    JsonDocument& document_;
+    JsonObject root_;
+    const SceneLoadSettings& settings_;
+    SceneRole role_;
+    std::filesystem::path folder_;
+    SceneFile file_;
+    Scene& scene_ = file_.scene;
+    SceneNames names_;
+    uint64_t plant_count_ = 0;
+};
+
+}  // namespace
+
+Result<SceneFile> read_scene_file(const std::string& path, const SceneLoadSettings& settings,
+                                  SceneRole role) {
+    COPPICE_TRY(std::string text, read_text_file(path));
+    COPPICE_TRY(JsonDocument document, JsonDocument::parse(text, path));
+    return SceneReader(document, path, settings, role).read();
+}
+
+}  // namespace coppice

@@ -1,0 +1,161 @@
+#include "plugins/vegetation/lod/budget.h"
+
+namespace coppice {
+namespace {
+
+constexpr double k_tolerance = 0.005;  // of the budget
+
+// The least d' whose square is px2 or more, so that what is below px2 squared is below it.
+float edge_px(float px2) {
+    const float px = std::sqrt(px2);
+    return px * px < px2 ? std::bit_cast<float>(std::bit_cast<uint32_t>(px) + 1) : px;
+}
+
+// Between two edges of a bin V falls from `finer`, above the budget, to `coarser`.
+//
+// Without jumps it falls by 1 - 256/257 at most, 0.39 %, since no part falls faster than 1/d'^2: any d' in the bin is
+// within the tolerance. Each part's count is concave in 1/d'^2, so V lies above its chord, by 0.1 % at most: a quarter of
+// the fall, where all parts have their kink in the middle. Where V falls by more, something jumps, and only the edges are
+// known. (With fewer than two points a triangle, points fall faster past their last; that is taken for a jump.)
+float choose_in_bin(float finer_px2, float coarser_px2, double finer, double coarser, double budget) {
+    const double tolerance = k_tolerance * budget;
+    if (finer - coarser <= tolerance) {
+        const double share = std::clamp((budget - coarser) / (finer - coarser), 0.0, 1.0);
+        const double fine = 1.0 / double(finer_px2), coarse = 1.0 / double(coarser_px2);
+        return float(1.0 / std::sqrt(coarse + share * (fine - coarse)));
+    }
+    const bool finer_fits = finer - budget <= tolerance && budget - coarser > tolerance;
+    return edge_px(finer_fits ? finer_px2 : coarser_px2);
+}
+
+}  // namespace
+
+void BudgetHistogram::add(const BudgetHistogram& other) {
+    for (size_t i = 0; i < bins_.size(); ++i) {
+        bins_[i].most += other.bins_[i].most;
+        bins_[i].per_area += other.bins_[i].per_area;
+        bins_[i].per_length += other.bins_[i].per_length;
+    }
+}
+
+float solve_sample_distance(const BudgetHistogram& histogram, uint64_t fixed_vertices,
+                            uint64_t budget_vertices, float least_px, float most_px) {
+    using H = BudgetHistogram;
+    const float least = least_px > k_finest_sample_distance_px
+                            ? std::min(least_px, k_coarsest_sample_distance_px)
+                            : k_finest_sample_distance_px;
+    const float most =
+        most_px < k_coarsest_sample_distance_px ? std::max(most_px, least) : k_coarsest_sample_distance_px;
+    if (budget_vertices == 0) return most;
+    const double budget = double(budget_vertices);
+
+    // V at an edge: what reaches its last level there or coarser draws that; the rest draws by d'.
+    struct Sums {
+        double per_area = 0.0, per_length = 0.0;  // of the rest
+        uint64_t most = 0;                        // of what is at its last level
+        void pass(const H::Bin& bin, int exponent) {
+            per_area += double(int64_t(bin.per_area)) * double(H::power_of_two(exponent));
+            per_length += double(int64_t(bin.per_length)) * double(H::power_of_two(H::halve(exponent)));
+            most -= bin.most;
+        }
+        double vertices_at(double px2) const {
+            return (double(int64_t(most)) + per_area / px2 + per_length / std::sqrt(px2)) /
+                   double(H::k_quanta);
+        }
+    };
+    auto px2_of = [](uint32_t bin) {
+        return std::bit_cast<float>((H::k_first_key - 1 + int(bin)) << (23 - H::k_bin_bits));
+    };
+
+    // Bins of an octave share their units, so it is added up in integers first, and only the octave in which V crosses
+    // the budget bin by bin.
+    H::Bin octaves[H::k_octave_count];
+    Sums sums;
+    for (uint32_t octave = 0; octave < H::k_octave_count; ++octave) {
+        H::Bin& sum = octaves[octave];
+        for (uint32_t i = 0; i < H::k_bins_per_octave; ++i) {
+            const H::Bin& bin = histogram.bins_[1 + octave * H::k_bins_per_octave + i];
+            sum.most += bin.most;
+            sum.per_area += bin.per_area;
+            sum.per_length += bin.per_length;
+        }
+        sums.most += sum.most;
+    }
+    const H::Bin& before = histogram.bins_.front();
+    sums.most += before.most + histogram.bins_.back().most;
+    const int first_exponent = H::exponent_of(H::k_first_key);
+    sums.pass(before, first_exponent - 1);
+
+    const double fixed = double(fixed_vertices);
+    auto vertices_at_edge = [&](const Sums& at, uint32_t bin) {
+        return fixed + at.vertices_at(double(px2_of(bin)));
+    };
+    uint32_t crossed = H::k_octave_count;  // the coarsest octave whose finer end draws too much
+    Sums at_crossed;
+    for (uint32_t octave = 0; octave < H::k_octave_count; ++octave) {
+        if (vertices_at_edge(sums, 1 + octave * H::k_bins_per_octave) > budget) {
+            crossed = octave;
+            at_crossed = sums;
+        }
+        sums.pass(octaves[octave], first_exponent + int(octave));
+    }
+    if (vertices_at_edge(sums, H::k_bin_count - 1) > budget) return most;
+    if (crossed == H::k_octave_count) return least;
+
+    const uint32_t first_bin = 1 + crossed * H::k_bins_per_octave;
+    double finer = vertices_at_edge(at_crossed, first_bin);
+    double edge_finer = 0.0, edge_coarser = 0.0;
+    uint32_t found = first_bin;
+    for (uint32_t bin = first_bin; bin < first_bin + H::k_bins_per_octave; ++bin) {
+        at_crossed.pass(histogram.bins_[bin], first_exponent + int(crossed));
+        const double coarser = vertices_at_edge(at_crossed, bin + 1);
+        // The octave's sums said that its end fits; by the bins' it may be a rounding off.
+        if (finer > budget && (coarser <= budget || bin + 1 == first_bin + H::k_bins_per_octave)) {
+            found = bin;
+            edge_finer = finer;
+            edge_coarser = coarser;
+        }
+        finer = coarser;
+    }
+    return std::clamp(choose_in_bin(px2_of(found), px2_of(found + 1), edge_finer, edge_coarser, budget),
+                      least, most);
+}
+
+void add_part(BudgetHistogram& histogram, const PackedPart& part, const PlantView& view,
+              const FrameSettings& settings) {
+    const float all = 3.0f * float(part.triangle_count);
+    if (!settings.level_of_detail) return histogram.add_always(all);
+    float area_px2 = projected_area_px2(part, view, settings.projection);
+    if (part.triangle_count == 0 || !(area_px2 > 0.0f)) return;
+    const bool measured = settings.projection == ProjectionMode::measured;
+    const float d = std::max(settings.sample_distance_px, 1.0e-3f);
+    if (part.kind == PackedPartKind::points) {
+        const float stored = float(part.point_count);
+        if (part.point_count == 0) return histogram.add_always(all);
+        if (measured) area_px2 *= gain_at(part, area_px2 / (stored * d * d));
+        const float wanted = settings.splat_factor * part.importance * area_px2;
+        if (settings.blend) return histogram.add_points(wanted, stored, all);
+        return histogram.add_switching_points(wanted, stored, all);
+    }
+    const float length_px = projected_length_px(part, view, settings.projection);
+    if (part.line_count == 0 || !(length_px > 0.0f)) return histogram.add_always(all);
+    if (measured) area_px2 *= gain_at(part, area_px2 / (length_px * d));
+    const float all_lines_px = part.importance * area_px2 / length_px;  // the d' of q = 1
+    histogram.add_lines(2.0f * float(part.line_count) * all_lines_px,
+                        std::max(all_lines_px, part.line_error_m * view.pixels_per_meter), all);
+}
+
+void add_cloud(BudgetHistogram& histogram, const PackedPart& cloud, const PlantView& view,
+               float nearest_pixels_per_meter, const FrameSettings& settings) {
+    PlantView nearest = view;
+    nearest.pixels_per_meter = nearest_pixels_per_meter;
+    const float d = std::max(settings.sample_distance_px, 1.0e-3f);
+    const float stored = float(cloud.point_count);
+    float nearest_px2 = projected_area_px2(cloud, nearest, settings.projection);
+    if (cloud.point_count == 0 || !(nearest_px2 > 0.0f) || !(view.pixels_per_meter > 0.0f)) return;
+    if (settings.projection == ProjectionMode::measured)
+        nearest_px2 *= gain_at(cloud, nearest_px2 / (stored * d * d));
+    histogram.add_points(settings.splat_factor * cloud.importance * nearest_px2, stored, stored);
+}
+
+}  // namespace coppice

@@ -38,7 +38,7 @@ Result<std::string> read_text_file(const std::string& path, size_t size_limit_by
     return std::string(reinterpret_cast<const char*>(file.bytes().data()), file.bytes().size());
 }
 
-Status write_file(const std::string& path, std::span<const std::byte> bytes) {
+Status write_file_pieces(const std::string& path, std::span<const std::span<const std::byte>> pieces) {
     auto failed = [&path](const char* what) {
         return fail(ErrorId::write_failed, path, "", std::string(what) + ": " + std::strerror(errno),
                     "the old file, if any, is unchanged; check space and permissions");
@@ -56,13 +56,13 @@ Status write_file(const std::string& path, std::span<const std::byte> bytes) {
         ::unlink(temporary.c_str());
         return result;
     };
-    size_t written = 0;
-    while (written < bytes.size()) {
-        ssize_t count = ::write(fd, bytes.data() + written, bytes.size() - written);
-        if (count < 0 && errno == EINTR) continue;
-        if (count <= 0) return give_up("cannot write");
-        written += size_t(count);
-    }
+    for (std::span<const std::byte> rest : pieces)
+        while (!rest.empty()) {
+            ssize_t count = ::write(fd, rest.data(), rest.size());
+            if (count < 0 && errno == EINTR) continue;
+            if (count <= 0) return give_up("cannot write");
+            rest = rest.subspan(size_t(count));
+        }
     if (::fsync(fd) != 0) return give_up("cannot flush");
     if (::close(fd) != 0 || ::rename(temporary.c_str(), path.c_str()) != 0) {
         auto result = failed("cannot replace");
@@ -70,6 +70,10 @@ Status write_file(const std::string& path, std::span<const std::byte> bytes) {
         return result;
     }
     return {};
+}
+
+Status write_file(const std::string& path, std::span<const std::byte> bytes) {
+    return write_file_pieces(path, std::span(&bytes, 1));
 }
 
 Status write_text_file(const std::string& path, std::string_view text) {

@@ -14,6 +14,8 @@ Result<std::string> read_text_file(const std::string& path, size_t size_limit_by
 // Temporary file beside the target, fsync, rename; with the permissions any new file gets. Makes missing
 // parent folders. From any thread. Errors: write_failed.
 Status write_file(const std::string& path, std::span<const std::byte> bytes);
+// The pieces one behind the other, as one file.
+Status write_file_pieces(const std::string& path, std::span<const std::span<const std::byte>> pieces);
 Status write_text_file(const std::string& path, std::string_view text);
 
 // $XDG_CACHE_HOME/coppice, else ~/.cache/coppice, else /tmp/coppice-cache. Not created.

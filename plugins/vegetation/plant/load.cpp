@@ -1,6 +1,7 @@
 #include <atomic>
 #include <bit>
 #include <cstring>
+#include "plugins/vegetation/plant/check_part.h"
 #include "plugins/vegetation/plant/description.h"
 #include "plugins/vegetation/plant/format.h"
 #include "plugins/vegetation/plant/plant.h"
@@ -49,29 +50,17 @@ const char* fault_of_part(const PackedPart& part, const Plant& plant, PartBegin&
         at += count;
         return fits;
     };
-    if (std::memchr(part.name, 0, sizeof part.name) == nullptr) return "the name does not end";
-    if (part.kind != PackedPartKind::points && part.kind != PackedPartKind::lines) return "an unknown kind";
+    if (const char* fault = fault_of_measures(part)) return fault;
     if (!take(part.first_triangle, part.triangle_count, plant.triangle_vertices.size() / 3, begin.triangle))
         return "triangles that do not follow the part before, or outside the file";
     if (!take(part.first_point, part.point_count, plant.points.size(), begin.point))
         return "points that do not follow the part before, or outside the file";
     if (!take(part.first_line, part.line_count, plant.line_vertices.size() / 2, begin.line))
         return "lines that do not follow the part before, or outside the file";
-    if (!(part.importance > 0.0f) || !std::isfinite(part.importance))
-        return "an importance that is not positive";
-    const float measures[] = {
-        part.area_m2,        part.line_length_m,        part.line_error_m,         part.longest_edge_m,
-        part.point_radius_m, part.mean_color_linear[0], part.mean_color_linear[1], part.mean_color_linear[2]};
-    for (float measure : measures)
-        if (!(measure >= 0.0f) || !std::isfinite(measure)) return "a negative or infinite measure";
     for (int axis = 0; axis < 3; ++axis)
         if (!(part.bounds_min[axis] >= -k_position_limit_m &&
               part.bounds_min[axis] <= part.bounds_max[axis] && part.bounds_max[axis] <= k_position_limit_m))
             return "bounds that are no box within 100 km of the origin";
-    if (!all_finite(part.projected_area_m2.m) || !all_finite(part.projected_length_m.m))
-        return "a value that is not finite";
-    for (float gain : part.coverage_gain)
-        if (!(gain > 0.0f) || !std::isfinite(gain)) return "a coverage gain that is not positive";
     for (uint32_t owner : plant.point_owners.subspan(part.first_point, part.point_count))
         if (owner >= part.triangle_count) return "a point of a triangle that does not exist";
     return nullptr;

@@ -23,23 +23,52 @@ uint32_t level_vertices(const Patch& patch, uint32_t step) {
     return 6 * across * down + 6 * 2 * (across + down);
 }
 
+// Two triangles between samples that are a level's spacing apart.
+struct LevelCell {
+    float first, east, south, last;
+    LevelCell(const HeightField& field, uint32_t column, uint32_t row, uint32_t step)
+        : first(field.sample(column, row)),
+          east(field.sample(column + step, row)),
+          south(field.sample(column, row + step)),
+          last(field.sample(column + step, row + step)) {}
+    float height(float u, float v) const {
+        return u > v ? first + u * (east - first) + v * (last - east)
+                     : first + v * (south - first) + u * (last - south);
+    }
+};
+
 // The coarse surface has its diagonals along the fine one's, so the difference is largest at a sample.
 float vertical_error(const HeightField& field, const Patch& patch, uint32_t step) {
     float error = 0.0f;
     for (uint32_t z = 0; z < patch.height; z += step)
         for (uint32_t x = 0; x < patch.width; x += step) {
             uint32_t column = patch.column + x, row = patch.row + z;
-            float first = field.sample(column, row), last = field.sample(column + step, row + step);
-            float east = field.sample(column + step, row), south = field.sample(column, row + step);
+            const LevelCell cell(field, column, row, step);
             for (uint32_t j = 0; j <= step; ++j)
                 for (uint32_t i = 0; i <= step; ++i) {
                     float u = float(i) / float(step), v = float(j) / float(step);
-                    float height = u > v ? first + u * (east - first) + v * (last - east)
-                                         : first + v * (south - first) + u * (last - south);
-                    error = std::max(error, std::fabs(height - field.sample(column + i, row + j)));
+                    error = std::max(error, std::fabs(cell.height(u, v) - field.sample(column + i, row + j)));
                 }
         }
     return error;
+}
+
+// No diagonal of a coarse level crosses a block but from corner to corner, so the level's surface over a block is lowest
+// at a vertex or at a corner of the block.
+void find_least_heights(const HeightField& field, const Patch& patch, uint32_t step, float* least) {
+    const uint32_t stride = std::min(step, k_block_cells);
+    for (uint32_t z = 0; z < patch.height; z += stride)
+        for (uint32_t x = 0; x < patch.width; x += stride) {
+            const uint32_t x_cell = x / step * step, z_cell = z / step * step;
+            const LevelCell cell(field, patch.column + x_cell, patch.row + z_cell, step);
+            float& block = least[z / k_block_cells * k_blocks_across + x / k_block_cells];
+            float lowest = INFINITY;
+            for (uint32_t j : {z, z + stride})
+                for (uint32_t i : {x, x + stride})
+                    lowest = std::min(lowest, cell.height(float(i - x_cell) / float(step),
+                                                          float(j - z_cell) / float(step)));
+            block = std::isfinite(block) ? std::min(block, lowest) : lowest;
+        }
 }
 
 struct Writer {
@@ -162,6 +191,7 @@ TerrainMesh build_patches(const HeightField& field) {
         return error;
     };
 
+    mesh.least_heights.assign(mesh.levels.size() * k_blocks_across * k_blocks_across, -INFINITY);
     mesh.vertices.resize(vertex_count);
     mesh.vertex_samples.resize(vertex_count);
     parallel_for(cut.size(), 1, [&](size_t first, size_t last) {
@@ -181,6 +211,8 @@ TerrainMesh build_patches(const HeightField& field) {
                 at.error_m =
                     level == 0 ? 0.0f
                                : std::max(vertical[index], k_color_error_share * float(step) * field.cell_m);
+                find_least_heights(field, cut[p], step,
+                                   &mesh.least_heights[index * k_blocks_across * k_blocks_across]);
                 float skirt_m = vertical[index] + beside + 0.05f * float(step) * field.cell_m;
                 write_level(cut[p], step, skirt_m,
                             {field, &mesh.vertices[at.first_vertex], &mesh.vertex_samples[at.first_vertex]});

@@ -8,7 +8,6 @@
 
 namespace coppice {
 
-inline constexpr uint32_t k_patch_cells = 32;
 // error_m is at least this share of a level's spacing, level 0 excepted: vertices carry the colour too, and
 // even flat ground must not lose it to a triangle of a hundred metres.
 inline constexpr float k_color_error_share = 1.0f / 4.0f;
@@ -16,6 +15,7 @@ inline constexpr float k_color_error_share = 1.0f / 4.0f;
 struct TerrainMesh {
     std::vector<TerrainPatch> patches;
     std::vector<TerrainLevel> levels;
+    std::vector<float> least_heights;      // Terrain::least_heights
     std::vector<PackedVertex> vertices;    // surface words are set by color_vertices
     std::vector<uint32_t> vertex_samples;  // which sample of the field a vertex shows
     std::vector<uint8_t> vertex_level;     // of each level's vertices, by level index: log2 of its spacing

@@ -45,6 +45,10 @@ class LoadedTerrain final : public Terrain {
         return mesh_.vertices;
     }
     void shade(float x_local, float z_local, float radius_m, float amount) override;
+    TerrainLayout layout() const override {
+        return {vec2(field_.x_of(0), field_.z_of(0)), field_.cell_m, field_.columns - 1, field_.rows - 1};
+    }
+    std::span<const float> least_heights() const override { return mesh_.least_heights; }
 
   private:
     HeightField field_;

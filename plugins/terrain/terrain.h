@@ -22,6 +22,19 @@ struct TerrainLevel {
     float error_m;
 };
 
+inline constexpr uint32_t k_patch_cells = 32;
+// A level's least heights are known for blocks of this many cells a side.
+inline constexpr uint32_t k_block_cells = 2;
+inline constexpr uint32_t k_blocks_across = k_patch_cells / k_block_cells;
+
+// How patches() tile the field: row by row from its corner of least x and z, each k_patch_cells a side but for the last
+// of a row or column, which may have fewer.
+struct TerrainLayout {
+    vec2 corner_local{0.0f};  // x, z
+    float cell_m = 0.0f;
+    uint32_t cells_x = 0, cells_z = 0;  // 0: not told
+};
+
 // A square piece with its levels, 0 the finest.
 struct TerrainPatch {
     Box bounds_local;
@@ -42,10 +55,15 @@ class Terrain {
     // Multiplies the ground's colour around a point, for what shades it; call before vertices() is used.
     // amount in [0, 1]; falls off smoothly to nothing at radius_m.
     virtual void shade(float x_local, float z_local, float radius_m, float amount) = 0;
+    // What the ground hides can be told only where these two are known.
+    virtual TerrainLayout layout() const { return {}; }
+    // Of each level k_blocks_across^2 blocks, row by row: the least height of its drawn surface, skirts left out;
+    // -infinity where a narrow patch has no block.
+    virtual std::span<const float> least_heights() const { return {}; }
 };
 
 inline constexpr const char* k_terrain_interface = "coppice.terrain";
-inline constexpr uint32_t k_terrain_version = 1;
+inline constexpr uint32_t k_terrain_version = 2;
 
 struct TerrainInterface {
     uint32_t size_bytes;

@@ -154,16 +154,17 @@ TEST(SampleDistance, OneJumpIsTakenFromTheCheapSide) {
     EXPECT_NEAR(solve_sample_distance(histogram, 0, 500, k_least, k_most), 8.0f, 0.02f);
 }
 
-// The last d' at which they are still triangles is the jump itself, wherever in a bin it lies.
+// A jump at any d', at bins' edges also, is passed by where its triangles do not fit.
 TEST(SampleDistance, EdgesOfBinsAgreeWithTheRuleOfLines) {
     Random random(4);
-    for (int round = 0; round < 2000; ++round) {
-        const float jump =
-            round < 400 ? std::ldexp(1.0f + float(round) / 400.0f, -2) : next_log(random, -0.8f, 2.5f);
+    auto expect_passed = [](float jump) {
         BudgetHistogram histogram;
         histogram.add_lines(10.0f, jump, 3000.0f);
-        ASSERT_GT(solve_sample_distance(histogram, 0, 1000, k_least, k_most), jump);
-    }
+        EXPECT_GT(solve_sample_distance(histogram, 0, 1000, k_least, k_most), jump);
+    };
+    for (float octave_px2 : {0.25f, 0.5f, 1.0f, 2.0f, 1024.0f})
+        for (int i = 0; i < 256; ++i) expect_passed(std::sqrt(octave_px2 * (1.0f + float(i) / 256.0f)));
+    for (int round = 0; round < 2000; ++round) expect_passed(next_log(random, -0.8f, 2.5f));
 }
 
 // Cooks may store other than two points a triangle; clouds have no triangles at all.
@@ -387,25 +388,71 @@ TEST(SampleDistance, ChoosePartDrawsTheBudgetAlsoAfterACameraCut) {
     }
 }
 
+// Clouds of tiles, whose counts follow no power of d'.
 TEST(SampleDistance, ChooseCloudDrawsTheBudget) {
     Random random(10);
-    Stand stand = random_stand(random, 1.0f, 1.0f);
-    std::erase_if(stand.parts, [](const PackedPart& part) { return part.kind == PackedPartKind::lines; });
-    for (PackedPart& part : stand.parts) part.triangle_count = 0;
-    const FrameSettings at_1px;
+    struct Cloud {
+        PackedPart part{};
+        std::vector<float> densities;
+        PlantView view;
+    };
+    std::vector<Cloud> clouds(300);
+    for (Cloud& cloud : clouds) {
+        const float area = next_log(random, 1.0f, 4.0f), power = random.next_in(0.6f, 1.3f);
+        const size_t count = random.next_below(8192);
+        cloud.part.kind = PackedPartKind::points;
+        cloud.part.point_count = uint32_t(count);
+        cloud.part.area_m2 = 2.0f * area;
+        cloud.part.projected_area_m2.m = {area * area, area * area, area * area, 0.0f, 0.0f, 0.0f};
+        for (size_t i = 0; i < count; ++i)
+            cloud.densities.push_back(100.0f *
+                                      std::pow((float(i) + random.next_unit()) / 8192.0f, 1.0f / power));
+        // A tenth of the points of every fifth cloud appear at once, as the first points of equal plants do.
+        if ((&cloud - clouds.data()) % 5 == 0)
+            for (size_t i = count / 2; i < count / 2 + count / 10; ++i)
+                cloud.densities[i] = cloud.densities[count / 2];
+        cloud.view = {vec3(0.0f, 0.0f, -1.0f), next_log(random, -1.0f, 1.5f)};
+    }
+    for (uint64_t budget : {20'000u, 200'000u, 800'000u}) {
+        FrameSettings settings;
+        BudgetHistogram histogram;
+        for (const Cloud& cloud : clouds)
+            add_cloud(histogram, cloud.part, cloud.densities, 1.2f * cloud.part.area_m2 / 2.0f, cloud.view,
+                      settings);
+        settings.sample_distance_px = solve_sample_distance(histogram, 0, budget, k_least, k_most);
+        double points = 0.0;
+        for (const Cloud& cloud : clouds) {
+            const PartChoice choice =
+                choose_cloud(cloud.part, cloud.densities, 1.2f * cloud.part.area_m2 / 2.0f, cloud.view, 10.0f,
+                             1.5f * cloud.view.pixels_per_meter, settings);
+            points += double(choice.points - choice.skipped_points);
+        }
+        EXPECT_GT(settings.sample_distance_px, k_least);
+        EXPECT_NEAR(points, double(budget), 0.015 * double(budget));
+    }
+}
+
+TEST(SampleDistance, BrokenCloudsAreIgnored) {
+    PackedPart part{};
+    part.projected_area_m2.m = {1.0f, 1.0f, 1.0f, 0.0f, 0.0f, 0.0f};
+    const PlantView view{vec3(0.0f, 0.0f, -1.0f), 10.0f};
+    const std::vector<float> odd[] = {{},
+                                      {k_nan, k_nan},
+                                      {0.0f, 0.0f},
+                                      {-1.0f},
+                                      {k_inf, k_inf, k_inf},
+                                      {0.0f, k_inf},
+                                      {k_nan, k_nan, 1.0f}};
+    for (const std::vector<float>& densities : odd) {
+        BudgetHistogram histogram;
+        add_cloud(histogram, part, densities, 1.0f, view, {});
+        const float d = solve_sample_distance(histogram, 0, 1, k_least, k_most);
+        EXPECT_TRUE(d >= k_least && d <= k_most);
+    }
     BudgetHistogram histogram;
-    for (const PlantView& view : stand.views)
-        for (const PackedPart& part : stand.parts)
-            add_cloud(histogram, part, view, 1.5f * view.pixels_per_meter, at_1px);
-    FrameSettings settings;
-    settings.sample_distance_px = solve_sample_distance(histogram, 0, 1'000'000, k_least, k_most);
-    double points = 0.0;
-    for (const PlantView& view : stand.views)
-        for (const PackedPart& part : stand.parts)
-            points +=
-                choose_cloud(part, view, 10.0f, 1.5f * view.pixels_per_meter, settings, random.next_unit())
-                    .points;
-    EXPECT_NEAR(points, 1.0e6, 0.01 * 1.0e6);
+    for (float area : {0.0f, -1.0f, k_nan})
+        add_cloud(histogram, part, std::vector{1.0f, 2.0f}, area, view, {});
+    EXPECT_TRUE(histogram == BudgetHistogram());
 }
 
 TEST(SampleDistance, WithoutLevelsOfDetailAllTrianglesCount) {

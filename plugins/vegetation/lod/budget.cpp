@@ -145,17 +145,27 @@ void add_part(BudgetHistogram& histogram, const PackedPart& part, const PlantVie
                         std::max(all_lines_px, part.line_error_m * view.pixels_per_meter), all);
 }
 
-void add_cloud(BudgetHistogram& histogram, const PackedPart& cloud, const PlantView& view,
-               float nearest_pixels_per_meter, const FrameSettings& settings) {
-    PlantView nearest = view;
-    nearest.pixels_per_meter = nearest_pixels_per_meter;
-    const float d = std::max(settings.sample_distance_px, 1.0e-3f);
-    const float stored = float(cloud.point_count);
-    float nearest_px2 = projected_area_px2(cloud, nearest, settings.projection);
-    if (cloud.point_count == 0 || !(nearest_px2 > 0.0f) || !(view.pixels_per_meter > 0.0f)) return;
-    if (settings.projection == ProjectionMode::measured)
-        nearest_px2 *= gain_at(cloud, nearest_px2 / (stored * d * d));
-    histogram.add_points(settings.splat_factor * cloud.importance * nearest_px2, stored, stored);
+void add_cloud(BudgetHistogram& histogram, const PackedPart& cloud, std::span<const float> densities,
+               float mean_area_m2, const PlantView& view, const FrameSettings& settings) {
+    const float area_px2 = projected_area_px2(cloud, view, settings.projection);
+    const float mean_px2 = mean_area_m2 * view.pixels_per_meter * view.pixels_per_meter;
+    if (!(area_px2 > 0.0f) || !(mean_px2 > 0.0f)) return;
+    // T of the first point not drawn, times d'^2.
+    const float density_at_1px =
+        view.pixels_per_meter * view.pixels_per_meter * settings.splat_factor * area_px2 / mean_px2;
+    // From the densest down: each line's slope less the next one's is the weight of the kink between them. Where many
+    // points appear at once the line is steep, but no jump.
+    float slope_above = 0.0f, density = densities.empty() ? 0.0f : std::min(densities.back(), 1.0e30f);
+    for (size_t count = densities.size(); count > 0 && density > 0.0f;) {
+        const size_t fewer = count * 7 / 10;
+        const float density_of_fewer =
+            fewer > 0 ? std::min(std::max(0.0f, densities[fewer - 1]), 0.999f * density) : 0.0f;
+        const float slope = float(count - fewer) / (density - density_of_fewer);
+        histogram.add_saturating(density_at_1px, density, slope - slope_above);
+        slope_above = slope;
+        count = fewer;
+        density = density_of_fewer;
+    }
 }
 
 }  // namespace coppice

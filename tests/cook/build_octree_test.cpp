@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 #include <algorithm>
+#include <bit>
+#include <map>
 #include <set>
+#include <tuple>
 #include "plugins/vegetation/cook/cook_plant.h"
 #include "plugins/vegetation/cook/trace_lines.h"
 #include "plugins/vegetation/cook/triangle_areas.h"
@@ -228,40 +231,120 @@ PlantDescription large_tree() {
     return tree;
 }
 
-TEST(BuildOctree, CookedCellsShareNameImportanceAndGain) {
+Plant cook_large_tree() {
     auto bytes = cook_plant(large_tree(), {});
-    ASSERT_TRUE(bytes) << to_string(bytes.error());
+    EXPECT_TRUE(bytes) << to_string(bytes.error());
     auto plant =
         load_plant_from_memory(std::make_shared<const std::vector<std::byte>>(std::move(*bytes)), "large");
-    ASSERT_TRUE(plant) << to_string(plant.error());
-    std::vector<PackedPart> leaves, bark;
-    uint64_t triangles = 0;
-    for (const PackedPart& part : plant->parts) {
-        triangles += part.triangle_count;
-        (part.flags & k_part_leaf ? leaves : bark).push_back(part);
-        for (uint32_t v = 3 * part.first_triangle; v < 3 * (part.first_triangle + part.triangle_count); ++v) {
-            const PackedVertex& vertex = plant->triangle_vertices[v];
-            const float p[3] = {vertex.x_plant, vertex.y_plant, vertex.z_plant};
-            for (int axis = 0; axis < 3; ++axis) {
-                ASSERT_GE(p[axis], part.bounds_min[axis]);
-                ASSERT_LE(p[axis], part.bounds_max[axis]);
+    EXPECT_TRUE(plant) << to_string(plant.error());
+    return std::move(*plant);
+}
+
+TEST(BuildOctree, CookedCellsShareTheirPartOut) {
+    const Plant plant = cook_large_tree();
+    ASSERT_EQ(plant.parts.size(), 2u);
+    EXPECT_EQ(plant.triangle_vertices.size() / 3, 24000u + 40000u);
+    for (uint32_t p = 0; p < 2; ++p) {
+        const PackedPart& part = plant.parts[p];
+        std::vector<PackedPart> cells;
+        for (const PackedPart& cell : plant.cells)
+            if (cell.part == p) cells.push_back(cell);
+        ASSERT_GE(cells.size(), 8u);
+        uint32_t next_triangle = part.first_triangle, point_count = 0, line_count = 0;
+        float area_m2 = 0.0f, length_m = 0.0f, seen_m2 = 0.0f;
+        for (const PackedPart& cell : cells) {
+            EXPECT_STREQ(cell.name, part.name);
+            EXPECT_EQ(cell.kind, part.kind);
+            EXPECT_EQ(cell.flags, part.flags);
+            EXPECT_EQ(cell.importance, part.importance);
+            EXPECT_EQ(cell.coverage_gain, cells[0].coverage_gain);
+            EXPECT_EQ(cell.first_triangle, next_triangle);
+            EXPECT_GT(cell.point_count + cell.line_count, 0u);
+            next_triangle += cell.triangle_count;
+            point_count += cell.point_count;
+            line_count += cell.line_count;
+            area_m2 += cell.area_m2;
+            length_m += cell.line_length_m;
+            seen_m2 += cell.projected_area_m2.evaluate(vec3(0, 0, 1));
+            for (uint32_t v = 3 * cell.first_triangle; v < 3 * next_triangle; ++v) {
+                const PackedVertex& vertex = plant.triangle_vertices[v];
+                const float at[3] = {vertex.x_plant, vertex.y_plant, vertex.z_plant};
+                for (int axis = 0; axis < 3; ++axis) {
+                    ASSERT_GE(at[axis], cell.bounds_min[axis]);
+                    ASSERT_LE(at[axis], cell.bounds_max[axis]);
+                }
             }
         }
+        EXPECT_EQ(next_triangle, part.first_triangle + part.triangle_count);
+        EXPECT_NEAR(area_m2, part.area_m2, 1e-4f * area_m2);
+        EXPECT_NEAR(length_m, part.line_length_m, 1e-4f * length_m);
+        EXPECT_NEAR(seen_m2, part.projected_area_m2.evaluate(vec3(0, 0, 1)), 0.02f * seen_m2);
+        EXPECT_EQ(part.line_count, line_count);
+        EXPECT_LE(part.point_count, point_count / 4);
+        EXPECT_GE(part.point_count, point_count / 5);
     }
-    EXPECT_EQ(triangles, 24000u + 40000u);
-    for (const auto& cells : {leaves, bark}) {
-        ASSERT_GE(cells.size(), 8u);
-        for (const PackedPart& cell : cells) {
-            EXPECT_STREQ(cell.name, cells[0].name);
-            EXPECT_TRUE(cell.flags & k_part_cell);
-            EXPECT_EQ(cell.kind, cells[0].kind);
-            EXPECT_EQ(cell.importance, cells[0].importance);
-            EXPECT_EQ(cell.coverage_gain, cells[0].coverage_gain);
-            EXPECT_GT(cell.kind == PackedPartKind::lines ? cell.line_count : cell.point_count, 0u);
+    EXPECT_EQ(plant.parts[0].kind, PackedPartKind::points);
+    EXPECT_EQ(plant.parts[1].kind, PackedPartKind::lines);
+}
+
+// What is drawn in one piece far away is what the cells draw nearer by: a prefix of the part's points or lines is a prefix
+// of each cell's, as long as its area or number asks for.
+TEST(BuildOctree, PrefixesOfAPartArePrefixesOfItsCells) {
+    const Plant plant = cook_large_tree();
+    auto key_of = [](const PackedVertex& v) {
+        return std::tuple(v.x_plant, v.y_plant, v.z_plant, v.surface);
+    };
+    for (uint32_t p = 0; p < 2; ++p) {
+        const PackedPart& part = plant.parts[p];
+        const bool lines = part.kind == PackedPartKind::lines;
+        std::map<std::tuple<float, float, float, uint32_t>, std::pair<uint32_t, uint32_t>> place_of;
+        for (uint32_t c = 0; c < plant.cells.size(); ++c) {
+            const PackedPart& cell = plant.cells[c];
+            if (cell.part != p) continue;
+            for (uint32_t i = 0; i < (lines ? cell.line_count : cell.point_count); ++i)
+                place_of[key_of(lines ? plant.line_vertices[2 * (cell.first_line + i)]
+                                      : plant.points[cell.first_point + i])] = {c, i};
+        }
+        std::vector<uint32_t> taken(plant.cells.size(), 0);
+        const uint32_t count = lines ? part.line_count : part.point_count;
+        for (uint32_t i = 0; i < count; ++i) {
+            const PackedVertex& vertex =
+                lines ? plant.line_vertices[2 * (part.first_line + i)] : plant.points[part.first_point + i];
+            const auto found = place_of.find(key_of(vertex));
+            ASSERT_TRUE(found != place_of.end()) << i;
+            const auto [c, index] = found->second;
+            ASSERT_EQ(index, taken[c]++) << "the cell's next one";
+            const PackedPart& cell = plant.cells[c];
+            const float share = lines ? float(cell.line_count) / float(count) : cell.area_m2 / part.area_m2;
+            ASSERT_NEAR(float(taken[c]), share * float(i + 1), 1.5f);
+            if (lines) continue;
+            // Its triangle is the same one.
+            ASSERT_EQ(part.first_triangle + plant.point_owners[part.first_point + i],
+                      cell.first_triangle + plant.point_owners[cell.first_point + index]);
         }
     }
-    EXPECT_EQ(leaves[0].kind, PackedPartKind::points);
-    EXPECT_EQ(bark[0].kind, PackedPartKind::lines);
+}
+
+TEST(BuildOctree, AJoinedPartHasTheGainOfItsCellsAndTheirWidths) {
+    const Plant plant = cook_large_tree();
+    const PackedPart &leaves = plant.parts[0], &bark = plant.parts[1];
+    uint32_t point_count = 0;
+    double width = 0.0, length_m = 0.0;
+    for (const PackedPart& cell : plant.cells)
+        if (cell.part == 0) point_count += cell.point_count;
+    for (float fill : {0.003f, 0.05f, 0.24f})
+        EXPECT_NEAR(gain_at(leaves, fill * float(point_count) / float(leaves.point_count)),
+                    gain_at(plant.cells[0], fill), 0.01f)
+            << fill;
+    for (uint32_t i = bark.first_line; i < bark.first_line + bark.line_count; ++i) {
+        const PackedVertex* v = &plant.line_vertices[2 * i];
+        const double l = double(glm::length(
+            vec3(v[1].x_plant - v[0].x_plant, v[1].y_plant - v[0].y_plant, v[1].z_plant - v[0].z_plant)));
+        length_m += l;
+        width += l * double(std::bit_cast<float>(v[1].surface));
+    }
+    EXPECT_NEAR(length_m, double(bark.line_length_m), 1e-3 * length_m);
+    EXPECT_NEAR(width / length_m, 1.0, 0.02) << "widths over the part's mean";
 }
 
 // Made with gcc 12; clang and any number of threads must give it too.
@@ -272,7 +355,7 @@ TEST(BuildOctree, EveryCompilerAndThreadCountGivesTheSameBytes) {
         auto bytes = cook_plant(tree, {});
         set_thread_limit(0);
         ASSERT_TRUE(bytes) << to_string(bytes.error());
-        EXPECT_EQ(hash_to_hex(hash_bytes(bytes->data(), bytes->size())), "6c687559827bfe7d")
+        EXPECT_EQ(hash_to_hex(hash_bytes(bytes->data(), bytes->size())), "c626897397a95ee2")
             << threads
             << " threads\nIf the cook was changed on purpose: raise k_cook_version (cook_plant.h).";
     }

@@ -53,6 +53,25 @@ Result<Plant> load_changed(void (*change)(PlantBlocks&)) {
     return load(pack_plant(blocks));
 }
 
+// Of the leaf part's two triangles each has a cell, the second one with two points of its own.
+PlantBlocks small_plant_in_cells() {
+    PlantBlocks blocks = small_plant();
+    for (uint32_t c = 0; c < 2; ++c) {
+        PackedPart cell = blocks.parts[0];
+        cell.first_triangle = c;
+        cell.triangle_count = 1;
+        cell.first_point = uint32_t(blocks.points.size());
+        cell.point_count = 1 + c;
+        cell.first_line = 2;
+        blocks.cells.push_back(cell);
+        for (uint32_t i = 0; i <= c; ++i) {
+            blocks.points.push_back({0, 1, float(i), 5});
+            blocks.point_owners.push_back(0);
+        }
+    }
+    return blocks;
+}
+
 TEST(LoadPlant, GivesBackWhatWasPacked) {
     PlantBlocks blocks = small_plant();
     auto plant = load(pack_plant(blocks));
@@ -91,7 +110,7 @@ TEST(LoadPlant, ContentHashFollowsEveryBlock) {
 }
 
 TEST(LoadPlant, RefusesEveryTruncation) {
-    std::vector<std::byte> bytes = pack_plant(small_plant());
+    std::vector<std::byte> bytes = pack_plant(small_plant_in_cells());
     for (size_t length = 0; length < bytes.size(); ++length) {
         auto plant = load(std::vector<std::byte>(bytes.begin(), bytes.begin() + long(length)));
         ASSERT_FALSE(plant) << length;
@@ -102,7 +121,7 @@ TEST(LoadPlant, RefusesEveryTruncation) {
 }
 
 TEST(LoadPlant, RefusesEveryFlippedBit) {
-    std::vector<std::byte> bytes = pack_plant(small_plant());
+    std::vector<std::byte> bytes = pack_plant(small_plant_in_cells());
     for (size_t bit = 0; bit < bytes.size() * 8; ++bit) {
         bytes[bit / 8] ^= std::byte(1 << bit % 8);
         ASSERT_FALSE(load(bytes)) << "bit " << bit;
@@ -112,7 +131,7 @@ TEST(LoadPlant, RefusesEveryFlippedBit) {
 }
 
 TEST(LoadPlant, RefusesBlocksWhoseSizeWraps) {
-    std::vector<std::byte> bytes = pack_plant(small_plant());
+    std::vector<std::byte> bytes = pack_plant(small_plant_in_cells());
     for (uint64_t count : {UINT64_MAX, UINT64_MAX / 16, UINT64_MAX / 256 + 1, uint64_t(1) << 60}) {
         for (size_t b = 0; b < k_block_count; ++b) {
             std::vector<std::byte> changed = bytes;
@@ -127,6 +146,38 @@ TEST(LoadPlant, RefusesBlocksWhoseSizeWraps) {
             EXPECT_EQ(plant.error().id, ErrorId::file_corrupt);
         }
     }
+}
+
+TEST(LoadPlant, GivesBackCells) {
+    const PlantBlocks blocks = small_plant_in_cells();
+    auto plant = load(pack_plant(blocks));
+    ASSERT_TRUE(plant) << to_string(plant.error());
+    ASSERT_EQ(plant->cells.size(), 2u);
+    EXPECT_EQ(plant->parts.size(), 2u);
+    EXPECT_EQ(std::memcmp(plant->cells.data(), blocks.cells.data(), plant->cells.size_bytes()), 0);
+    EXPECT_EQ(plant->points.size(), 6u);
+}
+
+TEST(LoadPlant, RefusesCellsThatDoNotShareTheirPartOut) {
+    auto place_of = [](void (*change)(PlantBlocks&)) {
+        PlantBlocks blocks = small_plant_in_cells();
+        change(blocks);
+        auto plant = load(pack_plant(blocks));
+        return plant ? std::string("taken") : plant.error().place;
+    };
+    EXPECT_EQ(place_of([](PlantBlocks& b) { b.cells[1].part = 2; }), "cells[0]") << "half of its part";
+    EXPECT_EQ(place_of([](PlantBlocks& b) { b.cells[0].part = UINT32_MAX; }), "cells[0]");
+    EXPECT_EQ(place_of([](PlantBlocks& b) { b.cells[0].part = 1; }), "cells[0]") << "of another kind";
+    EXPECT_EQ(place_of([](PlantBlocks& b) { std::swap(b.cells[0], b.cells[1]); }), "cells[0]");
+    EXPECT_EQ(place_of([](PlantBlocks& b) { b.cells[0].triangle_count = 0; }), "cells[0]") << "its owners";
+    EXPECT_EQ(place_of([](PlantBlocks& b) { b.cells[1].first_triangle = 0; }), "cells[1]");
+    EXPECT_EQ(place_of([](PlantBlocks& b) { b.cells[1].triangle_count = 2; }), "cells[1]") << "past the part";
+    EXPECT_EQ(place_of([](PlantBlocks& b) { b.cells[1].first_point = 0; }), "cells[1]");
+    EXPECT_EQ(place_of([](PlantBlocks& b) { b.cells[1].point_count = UINT32_MAX; }), "cells[1]");
+    EXPECT_EQ(place_of([](PlantBlocks& b) { b.cells[1].bounds_max[0] = INFINITY; }), "cells[1]");
+    EXPECT_EQ(place_of([](PlantBlocks& b) { b.cells[0].importance = NAN; }), "cells[0]");
+    EXPECT_EQ(place_of([](PlantBlocks& b) { b.cells.pop_back(); }), "cells[0]") << "half of the part";
+    EXPECT_EQ(place_of([](PlantBlocks& b) { b.points.push_back({}), b.point_owners.push_back(0); }), "parts");
 }
 
 TEST(LoadPlant, RefusesValuesNoPlantCanHave) {

@@ -10,6 +10,7 @@
 #include "plugins/vegetation/cook/clean_mesh.h"
 #include "plugins/vegetation/cook/closed_share.h"
 #include "plugins/vegetation/cook/importance.h"
+#include "plugins/vegetation/cook/join_cells.h"
 #include "plugins/vegetation/cook/measure_coverage.h"
 #include "plugins/vegetation/cook/measure_projection.h"
 #include "plugins/vegetation/cook/merge_parts.h"
@@ -38,7 +39,7 @@ SampleSettings sample_settings(const CookSettings& settings, uint64_t seed) {
     return {settings.sampler, settings.order, settings.points_per_triangle, seed};
 }
 
-// Appends one part, or one cell of a part, to the plant, but for its coverage gain. seed: of this one.
+// Appends one part, or one cell of a part, to a plant's parts, but for its coverage gain. seed: of this one.
 class PartPacker {
   public:
     PartPacker(const CookPart& part, float importance, const OpennessGrid& openness,
@@ -224,7 +225,7 @@ class PartPacker {
     std::vector<uint32_t> curve_, triangle_order_;  // indices of the mesh's triangles
 };
 
-// Of the plant's last parts, the cells of one part or the part alone: measured together, because cells hide one another
+// Of the parts from first_part on, a part alone or the cells of one: measured together, because cells hide one another
 // as the part's pieces do, and drawn far away must cover together what the part covers.
 void set_coverage_gain(PlantBlocks& plant, size_t first_part) {
     const std::span<PackedPart> cells = std::span(plant.parts).subspan(first_part);
@@ -233,10 +234,49 @@ void set_coverage_gain(PlantBlocks& plant, size_t first_part) {
         cells, std::span(plant.triangle_vertices).subspan(3 * size_t(first.first_triangle)),
         std::span(plant.points).subspan(first.first_point),
         std::span(plant.line_vertices).subspan(2 * size_t(first.first_line)));
-    for (PackedPart& cell : cells) {
-        cell.coverage_gain = gain;
-        if (cells.size() > 1) cell.flags |= k_part_cell;
+    for (PackedPart& cell : cells) cell.coverage_gain = gain;
+}
+
+template <class T>
+void append(std::vector<T>& to, const std::vector<T>& items) {
+    to.insert(to.end(), items.begin(), items.end());
+}
+
+// A part that was cut: joined into one part of the plant. The cells are kept for later, with their ranges of points and
+// lines within `cells`, because these follow all parts'.
+void add_cut_part(const PlantBlocks& packed, std::span<const CookPart> meshes, PlantBlocks& plant,
+                  PlantBlocks& cells) {
+    JoinedCells joined = join_cells(packed, meshes);
+    joined.part.first_triangle = uint32_t(plant.triangle_vertices.size() / 3);
+    joined.part.first_point = uint32_t(plant.points.size());
+    joined.part.first_line = uint32_t(plant.line_vertices.size() / 2);
+    for (PackedPart cell : packed.parts) {
+        cell.part = uint32_t(plant.parts.size());
+        cell.first_triangle += joined.part.first_triangle;
+        cell.first_point += uint32_t(cells.points.size());
+        cell.first_line += uint32_t(cells.line_vertices.size() / 2);
+        cells.cells.push_back(cell);
     }
+    plant.parts.push_back(joined.part);
+    append(plant.triangle_vertices, packed.triangle_vertices);
+    append(plant.points, joined.points);
+    append(plant.point_owners, joined.point_owners);
+    append(plant.line_vertices, joined.line_vertices);
+    append(cells.points, packed.points);
+    append(cells.point_owners, packed.point_owners);
+    append(cells.line_vertices, packed.line_vertices);
+    plant.bounds_plant.include(packed.bounds_plant);
+}
+
+void add_cells(const PlantBlocks& cells, PlantBlocks& plant) {
+    for (PackedPart cell : cells.cells) {
+        cell.first_point += uint32_t(plant.points.size());
+        cell.first_line += uint32_t(plant.line_vertices.size() / 2);
+        plant.cells.push_back(cell);
+    }
+    append(plant.points, cells.points);
+    append(plant.point_owners, cells.point_owners);
+    append(plant.line_vertices, cells.line_vertices);
 }
 
 }  // namespace
@@ -316,18 +356,26 @@ Result<std::vector<std::byte>> cook_plant(const PlantDescription& plant, const C
     if (point_count > settings.primitive_limit)
         return fail(ErrorId::limit_exceeded, plant.name, "", fmt::format("{} points", point_count),
                     fmt::format("at most {} a plant: fewer points a triangle", settings.primitive_limit));
+    PlantBlocks cells;
+    cells.name = plant.name;
     for (size_t i = 0; i < cells_of_part.size(); ++i) {
+        const std::vector<CookPart>& meshes = cells_of_part[i];
+        const bool is_cut = meshes.size() > 1;
         const uint64_t seed = hash_combine(settings.seed, i);
-        const std::vector<CookPart>& cells = cells_of_part[i];
-        const size_t first_part = blocks.parts.size();
-        for (size_t c = 0; c < cells.size(); ++c) {
-            COPPICE_CHECK(PartPacker(cells[c], importance[i], openness, settings,
-                                     cells.size() > 1 ? hash_combine(seed, c) : seed, blocks)
+        PlantBlocks packed_cells;
+        packed_cells.name = plant.name;
+        PlantBlocks& target = is_cut ? packed_cells : blocks;
+        const size_t first_part = target.parts.size();
+        for (size_t c = 0; c < meshes.size(); ++c) {
+            COPPICE_CHECK(PartPacker(meshes[c], importance[i], openness, settings,
+                                     is_cut ? hash_combine(seed, c) : seed, target)
                               .run());
-            advance(cells[c].shape.part.indices.size() / 3);
+            advance(meshes[c].shape.part.indices.size() / 3);
         }
-        set_coverage_gain(blocks, first_part);
+        set_coverage_gain(target, first_part);
+        if (is_cut) add_cut_part(packed_cells, meshes, blocks, cells);
     }
+    add_cells(cells, blocks);
     return pack_plant(blocks);
 }
 

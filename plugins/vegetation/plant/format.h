@@ -10,7 +10,7 @@ namespace coppice {
 static_assert(std::endian::native == std::endian::little, "packed plants are used in place");
 
 inline constexpr char k_plant_magic[4] = {'C', 'P', 'L', 'T'};
-inline constexpr uint32_t k_plant_version = 2;
+inline constexpr uint32_t k_plant_version = 3;
 inline constexpr uint64_t k_plant_block_alignment = 64;
 
 enum PlantBlock : uint32_t {
@@ -19,6 +19,7 @@ enum PlantBlock : uint32_t {
     k_block_points,
     k_block_point_owners,
     k_block_line_vertices,
+    k_block_cells,
     k_block_count
 };
 
@@ -38,7 +39,7 @@ struct PlantFileHead {
     uint32_t dropped_triangles, dropped_vertices;
     uint32_t reserved[6];
     PlantBlockPlace blocks[k_block_count];
-    uint64_t reserved_end[7];
+    uint64_t reserved_end[4];
 };
 static_assert(sizeof(PlantFileHead) == 5 * 64);
 

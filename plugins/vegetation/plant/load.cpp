@@ -12,10 +12,11 @@ namespace coppice {
 namespace {
 
 constexpr const char* k_remedy = "packed plants are a cache: cook the plant again";
-constexpr const char* k_block_names[k_block_count] = {"parts", "triangle vertices", "points", "point owners",
-                                                      "line vertices"};
-constexpr uint64_t k_item_bytes[k_block_count] = {
-    sizeof(PackedPart), sizeof(PackedVertex), sizeof(PackedVertex), sizeof(uint32_t), sizeof(PackedVertex)};
+constexpr const char* k_block_names[k_block_count] = {"parts",        "triangle vertices", "points",
+                                                      "point owners", "line vertices",     "cells"};
+constexpr uint64_t k_item_bytes[k_block_count] = {sizeof(PackedPart),   sizeof(PackedVertex),
+                                                  sizeof(PackedVertex), sizeof(uint32_t),
+                                                  sizeof(PackedVertex), sizeof(PackedPart)};
 
 bool positions_usable(std::span<const PackedVertex> vertices) {
     std::atomic<bool> usable{true};
@@ -63,6 +64,26 @@ const char* fault_of_part(const PackedPart& part, const Plant& plant, PartBegin&
             return "bounds that are no box within 100 km of the origin";
     for (uint32_t owner : plant.point_owners.subspan(part.first_point, part.point_count))
         if (owner >= part.triangle_count) return "a point of a triangle that does not exist";
+    return nullptr;
+}
+
+// Null where the cells share out the triangles of the parts that they name, else what is wrong with cell `at`, behind
+// which `begin` stands then.
+const char* fault_of_cells(const Plant& plant, PartBegin& begin, size_t& at) {
+    for (at = 0; at < plant.cells.size(); ++at) {
+        const PackedPart& cell = plant.cells[at];
+        const bool first = at == 0 || plant.cells[at - 1].part != cell.part;
+        if (cell.part >= plant.parts.size() || (at > 0 && plant.cells[at - 1].part > cell.part))
+            return "a cell of no part, or of one before the last cell's";
+        const PackedPart& part = plant.parts[cell.part];
+        if (cell.kind != part.kind) return "a cell of another kind than its part";
+        if (first) begin.triangle = part.first_triangle;
+        if (const char* fault = fault_of_part(cell, plant, begin)) return fault;
+        const bool last = at + 1 == plant.cells.size() || plant.cells[at + 1].part != cell.part;
+        const uint64_t end = uint64_t(part.first_triangle) + part.triangle_count;
+        if (begin.triangle > end || (last && begin.triangle < end))
+            return "cells that do not hold their part's triangles";
+    }
     return nullptr;
 }
 
@@ -126,6 +147,7 @@ Result<Plant> view_plant(std::span<const std::byte> bytes, const std::string& fi
     plant.points = span_of(k_block_points, static_cast<const PackedVertex*>(nullptr));
     plant.point_owners = span_of(k_block_point_owners, static_cast<const uint32_t*>(nullptr));
     plant.line_vertices = span_of(k_block_line_vertices, static_cast<const PackedVertex*>(nullptr));
+    plant.cells = span_of(k_block_cells, static_cast<const PackedPart*>(nullptr));
     plant.dropped_triangles = head.dropped_triangles;
     plant.dropped_vertices = head.dropped_vertices;
 
@@ -141,8 +163,11 @@ Result<Plant> view_plant(std::span<const std::byte> bytes, const std::string& fi
     for (size_t i = 0; i < plant.parts.size(); ++i)
         if (const char* fault = fault_of_part(plant.parts[i], plant, begin))
             return wrong("parts[" + std::to_string(i) + "]", fault);
-    if (begin.triangle != plant.triangle_vertices.size() / 3 || begin.point != plant.points.size() ||
-        begin.line != plant.line_vertices.size() / 2)
+    const bool all_triangles = begin.triangle == plant.triangle_vertices.size() / 3;
+    size_t cell = 0;
+    if (const char* fault = fault_of_cells(plant, begin, cell))
+        return wrong("cells[" + std::to_string(cell) + "]", fault);
+    if (!all_triangles || begin.point != plant.points.size() || begin.line != plant.line_vertices.size() / 2)
         return wrong("parts", "triangles, points or lines that belong to no part");
     constexpr const char* k_far = "a position that is not finite, or further than 100 km from the origin";
     if (!positions_usable(plant.triangle_vertices)) return wrong("triangle vertices", k_far);

@@ -17,6 +17,7 @@ struct PlantBlocks {
     std::vector<PackedVertex> points;
     std::vector<uint32_t> point_owners;
     std::vector<PackedVertex> line_vertices;
+    std::vector<PackedPart> cells;
     uint32_t dropped_triangles = 0;
     uint32_t dropped_vertices = 0;
 };

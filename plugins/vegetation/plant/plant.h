@@ -1,6 +1,6 @@
 // A packed plant in memory: a view into one mapped .plant file (or into a buffer of the same bytes), used in
-// place. Format, little-endian: header, parts, then one block each of triangle vertices, points, point owners
-// and line vertices; every block is checksummed (XXH3-64) and starts at a multiple of 64 bytes. pack.cpp
+// place. Format, little-endian: header, parts, then one block each of triangle vertices, points, point owners,
+// line vertices and cells; every block is checksummed (XXH3-64) and starts at a multiple of 64 bytes. pack.cpp
 // writes, load.cpp reads.
 #pragma once
 #include <array>
@@ -34,7 +34,6 @@ inline constexpr uint32_t k_part_closed = 1;  // of a closed surface only the fr
 inline constexpr uint32_t k_part_leaf = 2;    // lit from both sides
 inline constexpr uint32_t k_part_faces_outwards =
     4;  // closed, and wound so that back faces need not be drawn
-inline constexpr uint32_t k_part_cell = 8;  // one of the octree cells that stand for a part one behind the other
 
 enum class PackedPartKind : uint32_t { points = 0, lines = 1 };
 
@@ -62,7 +61,8 @@ struct PackedPart {
     DirectionForm projected_length_m;  // of the lines
     float mean_color_linear[3];
     std::array<float, k_gain_levels> coverage_gain;  // cook/measure_coverage.h
-    uint32_t reserved[5];
+    uint32_t part;                                   // of a cell: index of the part it is cut from; else 0
+    uint32_t reserved[4];
 };
 static_assert(sizeof(PackedPart) == 256);
 
@@ -82,6 +82,11 @@ struct Plant {
     std::span<const PackedVertex>
         line_vertices;               // two a line; the second one's surface is not a surface but the
                                      // line's own width over the part's mean, as float bits, in (0, 100]
+    // Octree cells of large parts, part after part: what a viewer near the plant draws in place of the part. They share
+    // its triangles out; their points and lines are their own, behind all parts' in the spans above. Such a part itself
+    // stores the points that far views need, cut off where cells take over, and its triangles are not in progressive
+    // order: only all of them can be drawn.
+    std::span<const PackedPart> cells;
     uint32_t dropped_triangles = 0;  // zero area or not finite, left out by the cook
     uint32_t dropped_vertices = 0;   // used by no triangle
     std::shared_ptr<const MappedFile> file;  // keeps the spans alive; or:
@@ -89,7 +94,7 @@ struct Plant {
 };
 
 // Everything is checked before it is used: magic, version, block bounds (overflow-safe), checksums, that all
-// ranges of parts follow each other through their blocks without gaps, that all positions are finite and
+// ranges of parts and cells follow each other through their blocks without gaps, that all positions are finite and
 // within k_position_limit_m (description.h). Errors: file_*, format_unknown, value_out_of_range.
 Result<Plant> load_plant(const std::string& path);
 Result<Plant> load_plant_from_memory(std::shared_ptr<const std::vector<std::byte>> bytes,

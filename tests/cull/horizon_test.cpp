@@ -253,14 +253,20 @@ TEST(Horizon, NothingHiddenCanBeSeen) {
             looking_down += shot.camera.pitch_rad < -1.2f;
         }
     }
-    EXPECT_GT(hidden, 5000u);
-    EXPECT_GT(rays, 50000u);
+    EXPECT_GT(hidden, 4000u);
+    EXPECT_GT(rays, 40000u);
     EXPECT_GT(deep_frames, 50u);
     EXPECT_GT(looking_down, 20u);
 }
 
+bool hidden_by(const Terrain* terrain, const Shot& shot, const Box& box, float spread_px = 1.0f) {
+    Horizon horizon;
+    horizon.build(terrain, shot.camera.position_world, shot.frustum(), shot.error_px);
+    return horizon.hidden(box, spread_px);
+}
+
 struct Found {
-    size_t hidden = 0, found = 0;
+    size_t seen = 0, hidden = 0, found = 0;
 };
 
 // Of the boxes whose every place lies behind the ground, how many are found; and none of the others.
@@ -278,6 +284,7 @@ Found find_hidden(const FieldTerrain& terrain, const Shot& shot, const std::vect
         }
         const bool found = horizon.hidden(box, 1.0f);
         EXPECT_FALSE(found && seen);
+        count.seen += seen;
         if (!in_view || seen) continue;
         ++count.hidden;
         count.found += found;
@@ -322,13 +329,37 @@ TEST(Horizon, FindsMostOfWhatARidgeHides) {
                3.0f * fractal_noise(x / 40.0, z / 40.0, 4, 0.5f, 9);
     }));
     for (float above_m : {1.7f, 20.0f})
-        for (float side_m : {4.0f, 12.0f, 32.0f}) {
+        for (float side_m : {7.0f, 12.0f, 32.0f}) {
             const Shot shot = standing_at(terrain, -120.0f, 10.0f, -0.5f * k_pi, above_m);
             const Found count =
                 find_hidden(terrain, shot, stand_boxes(terrain, shot, side_m, 8.0f, 30.0f, 220.0f));
             EXPECT_GT(count.hidden, 10u);
             EXPECT_GE(double(count.found), 0.9 * double(count.hidden)) << above_m << ' ' << side_m;
         }
+}
+
+// Far away a column is wider than a block, and a gap in a wall narrower than a column.
+TEST(Horizon, SeesThroughNarrowGaps) {
+    const FieldTerrain terrain(make_field(385, 129, 1.0f, [](float x, float z) {
+        const bool gap = std::fabs(z - 14.0f * std::round(z / 14.0f)) < 2.5f;
+        return x > 150.0f && x < 160.0f && !gap ? 30.0f : 0.0f;
+    }));
+    size_t hidden = 0, seen = 0;
+    for (float z : {-9.0f, 0.3f, 7.0f}) {
+        Shot shot = standing_at(terrain, -180.0f, z, -0.5f * k_pi, 6.0f);
+        shot.camera.vertical_fov_rad = 0.12f;  // pixels of millimetres
+        shot.width = 8000;
+        shot.height = 2000;
+        const Found count =
+            find_hidden(terrain, shot, stand_boxes(terrain, shot, 0.4f, 0.4f, 161.0f, 162.0f));
+        const Found before =
+            find_hidden(terrain, shot, stand_boxes(terrain, shot, 0.4f, 0.4f, 149.0f, 149.3f));
+        hidden += count.found;
+        seen += count.seen;
+        EXPECT_EQ(before.found, 0u);
+    }
+    EXPECT_GT(hidden, 30u);
+    EXPECT_GT(seen, 30u);
 }
 
 // Ground that rises and falls by a tree's height hides trees too.
@@ -367,10 +398,45 @@ Shot towards_wall(dvec3 origin_world = dvec3(0.0)) {
 
 constexpr Box k_behind_wall{vec3(55, -2, -6), vec3(62, 12, 6)};
 
-bool hidden_by(const Terrain* terrain, const Shot& shot, const Box& box, float spread_px = 1.0f) {
-    Horizon horizon;
-    horizon.build(terrain, shot.camera.position_world, shot.frustum(), shot.error_px);
-    return horizon.hidden(box, spread_px);
+// A ring of wall whose one gap begins at the picture's border: what shows in the outermost pixels counts as well.
+TEST(Horizon, SeesTheBorderOfThePicture) {
+    Random random(11);
+    size_t shown = 0;
+    for (int round = 0; round < 100; ++round) {
+        Shot shot;
+        shot.camera.position_world = dvec3(0.0, 2.0, 0.0);
+        shot.camera.yaw_rad = random.next_in(-3.2f, 3.2f);
+        shot.camera.pitch_rad = random.next_in(-0.25f, 0.05f);
+        shot.camera.vertical_fov_rad = random.next_in(0.8f, 1.6f);
+        const float side = round % 2 == 0 ? 1.0f : -1.0f;
+        auto place_at = [&](float angle, float height_m) {
+            const float azimuth = shot.camera.yaw_rad + side * angle;
+            return vec3(-56.0f * portable_sin(azimuth), height_m, -56.0f * portable_cos(azimuth));
+        };
+        auto ring = [&](float gap_angle) {
+            return FieldTerrain(make_field(121, 121, 1.0f, [&](float x, float z) {
+                const float radius = std::sqrt(x * x + z * z);
+                const float along =
+                    glm::dot(vec2(x, z), vec2(place_at(gap_angle, 0).x, place_at(gap_angle, 0).z));
+                const bool gap = along > 56.0f * radius * portable_cos(0.12f);
+                return radius > 30.0f && radius < 42.0f && !gap ? 5.0f : 0.0f;
+            }));
+        };
+        const FieldTerrain whole = ring(-k_pi);
+        const DrawnGround whole_ground(whole, shot);
+        float last = 0.0f;  // in the picture
+        while (last < 2.0f && whole_ground.on_picture(dvec3(place_at(last + 0.002f, 0.0f)))) last += 0.002f;
+        if (last < 0.2f) continue;
+        const FieldTerrain terrain = ring(last + random.next_in(0.06f, 0.11f));
+        Box box;
+        for (float angle : {last, last - 0.15f})
+            for (float height_m : {-2.5f, 0.0f}) box.include(place_at(angle, height_m));
+        EXPECT_TRUE(hidden_by(&whole, shot, box));
+        if (DrawnGround(terrain, shot).covers(dvec3(place_at(last, 0.0f)))) continue;
+        ++shown;
+        EXPECT_FALSE(hidden_by(&terrain, shot, box)) << round;
+    }
+    EXPECT_GT(shown, 20u);
 }
 
 TEST(Horizon, WhatStandsBeforeOrAboveIsNotHidden) {

@@ -50,8 +50,6 @@ void Horizon::build(const Terrain* terrain, dvec3 camera_world, const Frustum& f
     place.camera_local = vec3(camera_world - terrain->origin_world());
     place.camera_block[0] = (place.camera_local.x - layout.corner_local.x) / place.block_m;
     place.camera_block[1] = (place.camera_local.z - layout.corner_local.y) / place.block_m;
-    for (int axis = 0; axis < 2; ++axis)
-        if (!(place.camera_block[axis] > 0.0f && place.camera_block[axis] < place.end_block[axis])) return;
     const Box bounds = terrain->bounds_local();
     const vec3 extent = glm::max(glm::abs(bounds.min), glm::abs(bounds.max));
     place.slack_m = 0x1p-20f * (extent.x + extent.y + extent.z + std::fabs(place.camera_local.y));

@@ -2,17 +2,11 @@
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include "plugins/vegetation/cook/measure_projection.h"
+#include "plugins/vegetation/plant/direction_form.h"
 #include "runtime/core/hash.h"
 
 namespace coppice {
 namespace {
-
-float mean_over_directions(const DirectionForm& form) {
-    float sum = 0.0f;
-    for (vec3 d : projection_directions()) sum += form.evaluate(d);
-    return sum / float(k_projection_direction_count);
-}
 
 std::string srgb_hex(const float color_linear[3]) {
     std::string text = "#";

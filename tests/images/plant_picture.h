@@ -48,13 +48,19 @@ class PlantPicture {
         float to_m = distance_m / frustum.focal_px;
         vec3 center = frustum.forward * distance_m + frustum.right * (shift_px.x * to_m) +
                       frustum.up * (shift_px.y * to_m);
-        vec3 foot = center - model.center_plant;
+        return draw_from(camera, center - model.center_plant, true, settings);
+    }
+
+    // The plant with its foot there, relative to the camera. inside: cells are not tested against the view.
+    Result<PictureMean> draw_from(const Camera& camera, vec3 foot, bool inside,
+                                  const FrameSettings& settings) {
+        Frustum frustum = make_frustum(camera, side_, side_);
         PlantPosition position{foot.x, foot.y, foot.z, 1.0f};
         PlantTurn turn{0, 0, 0, 32767};
         PlantModel plant_model{0, seed_ = mix_seed(seed_)};
         work_.begin(1);
-        counts_ = expand_plants({vec3(0.0f), true, {&position, 1}, {&turn, 1}, {&plant_model, 1}}, geometry_,
-                                frustum, settings, 0, work_.part(0));
+        counts_ = expand_plants({vec3(0.0f), inside, {&position, 1}, {&turn, 1}, {&plant_model, 1}},
+                                geometry_, frustum, settings, 0, work_.part(0));
         WorkList::Size size = work_.size();
         if (size.entries > rasteriser_->entries(0).size())
             COPPICE_CHECK(rasteriser_->grow(0, size.instances, size.entries));
@@ -83,6 +89,7 @@ class PlantPicture {
 
     const WorkPart& work() { return work_.part(0); }
     const Plant& plant() const { return plant_; }
+    const DrawModel& model() const { return geometry_.models[0]; }
     std::vector<uint64_t> words;
 
   private:

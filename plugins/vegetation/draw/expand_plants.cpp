@@ -15,6 +15,21 @@ WorkInstance instance_of(const mat3& rotation, float scale, vec3 position) {
     return instance;
 }
 
+// Cells of a plant nearer than 3 radii are looked at from where they are. Farther than 6 no side of the plant is much
+// nearer than another, and its parts are drawn in one piece; in between cells are looked at from places that move from
+// the plant's centre to their own, so that nothing jumps.
+float share_of_own_place(const DrawModel& model, float distance_m, float scale) {
+    return model.has_cells ? glm::clamp(2.0f - distance_m / (3.0f * model.radius_m * scale), 0.0f, 1.0f)
+                           : 0.0f;
+}
+
+PlantView view_of(const Frustum& frustum, const mat3& rotation, vec3 center, float radius_m, float scale) {
+    const float distance_m = glm::length(center);
+    return {distance_m > 0.0f ? (center * (1.0f / distance_m)) * rotation : vec3(0.0f, 0.0f, -1.0f),
+            pixels_per_meter(frustum.focal_px, distance_m, radius_m, frustum.near_m, scale) *
+                off_axis_stretch(frustum, center, distance_m)};
+}
+
 }  // namespace
 
 ExpandCounts expand_plants(const PlantRun& run, const SceneGeometry& geometry, const Frustum& frustum,
@@ -32,23 +47,46 @@ ExpandCounts expand_plants(const PlantRun& run, const SceneGeometry& geometry, c
         ++counts.plants_visible;
         counts.full_triangles += model.triangle_count;
 
-        float distance_m = glm::length(center);
-        PlantView view;
-        view.pixels_per_meter = pixels_per_meter(frustum.focal_px, distance_m, model.radius_m * place.scale,
-                                                 frustum.near_m, place.scale) *
-                                off_axis_stretch(frustum, center, distance_m);
-        view.direction_plant =
-            distance_m > 0.0f ? (center * (1.0f / distance_m)) * rotation : vec3(0.0f, 0.0f, -1.0f);
+        const PlantView plant_view =
+            view_of(frustum, rotation, center, model.radius_m * place.scale, place.scale);
+        const float own_place = share_of_own_place(model, glm::length(center), place.scale);
         uint32_t instance = UINT32_MAX;
-        for (uint32_t p = 0; p < model.part_count; ++p) {
-            uint32_t part = model.first_part + p;
-            float chance = float(mix_bits(run.models[i].seed + p * 0x9e3779b9u) >> 8) * 0x1p-24f + turn;
+        auto choose = [&](uint32_t part, const PlantView& view) {
+            float chance =
+                float(mix_bits(run.models[i].seed + (part - model.first_part) * 0x9e3779b9u) >> 8) *
+                    0x1p-24f +
+                turn;
             if (chance >= 1.0f) chance -= 1.0f;
-            PartChoice choice = choose_part(geometry.parts[part], view, settings, chance);
-            if ((choice.triangles | choice.points | choice.lines) == 0) continue;
+            return choose_part(geometry.parts[part], view, settings, chance);
+        };
+        auto draw = [&](uint32_t part, const PartChoice& choice) {
+            if ((choice.triangles | choice.points | choice.lines) == 0) return;
             if (instance == UINT32_MAX)
                 instance = work.add_instance(instance_of(rotation, place.scale, position));
             work.add(geometry.part_geometry[part], choice, instance, turn);
+        };
+        for (uint32_t part = model.first_part; part < model.first_part + model.part_count; ++part) {
+            const PartCells cells = geometry.part_cells[part];
+            if (cells.count == 0 || own_place == 0.0f) {
+                const PartChoice choice = choose(part, plant_view);
+                // Only cells have points to go on with where the part's are used up, and blend.
+                if (cells.count == 0 || choice.triangles == 0 || !settings.level_of_detail) {
+                    draw(part, choice);
+                    continue;
+                }
+            }
+            for (uint32_t cell = cells.first; cell < cells.first + cells.count; ++cell) {
+                PlantView view = plant_view;
+                if (own_place > 0.0f) {
+                    const PartSphere& sphere = geometry.part_spheres[cell];
+                    const vec3 at = position + rotation * (sphere.center_plant * place.scale);
+                    const float radius_m = sphere.radius_m * place.scale;
+                    if (!run.inside && !sees_sphere(frustum, at, radius_m)) continue;
+                    view =
+                        view_of(frustum, rotation, center + (at - center) * own_place, radius_m, place.scale);
+                }
+                draw(cell, choose(cell, view));
+            }
         }
     }
     return counts;

@@ -33,15 +33,28 @@ Result<SceneGeometry> gather_geometry(const Scene& scene, std::span<const Plant>
         uint32_t first_line_vertex = append(plant.line_vertices);
         uint32_t first_owner = uint32_t(geometry.owners.size());
         geometry.owners.insert(geometry.owners.end(), plant.point_owners.begin(), plant.point_owners.end());
-        for (PackedPart part : plant.parts) {
+        auto add_part = [&](PackedPart part) {
             part.importance *= i < scene.models.size() ? scene.models[i].importance : 1.0f;
             geometry.part_geometry.push_back(
                 {first_triangle_vertex + part.first_triangle * 3, first_point + part.first_point,
                  first_line_vertex + part.first_line * 2, first_owner + part.first_point,
                  (part.flags & k_part_faces_outwards) != 0, part.point_count, part.line_count});
+            const vec3 low(part.bounds_min[0], part.bounds_min[1], part.bounds_min[2]);
+            const vec3 high(part.bounds_max[0], part.bounds_max[1], part.bounds_max[2]);
+            geometry.part_spheres.push_back({(low + high) * 0.5f, 0.5f * glm::length(high - low)});
+            geometry.part_cells.push_back({});
             geometry.parts.push_back(part);
+        };
+        for (const PackedPart& part : plant.parts) {
+            add_part(part);
             model.triangle_count += part.triangle_count;
         }
+        for (const PackedPart& cell : plant.cells) {
+            PartCells& cells = geometry.part_cells[model.first_part + cell.part];
+            if (cells.count++ == 0) cells.first = uint32_t(geometry.parts.size());
+            add_part(cell);
+        }
+        model.has_cells = !plant.cells.empty();
         geometry.models.push_back(model);
     }
     if (scene.terrain) geometry.first_terrain_vertex = append(scene.terrain->vertices());

@@ -13,12 +13,27 @@ struct DrawModel {
     float radius_m;  // of the sphere around center_plant that holds the plant
     uint32_t first_part, part_count;
     uint64_t triangle_count;
+    bool has_cells;  // in any of its parts
+};
+
+// The octree cells of a part, which are parts as well.
+struct PartCells {
+    uint32_t first = 0, count = 0;  // none: the part was not cut
+};
+
+// Holds a part.
+struct PartSphere {
+    vec3 center_plant;
+    float radius_m;
 };
 
 struct SceneGeometry {
     std::vector<DrawModel> models;
-    std::vector<PackedPart> parts;  // importance times the scene's
+    // Of each model its parts, then their cells; importance times the scene's.
+    std::vector<PackedPart> parts;
     std::vector<PartGeometry> part_geometry;
+    std::vector<PartCells> part_cells;
+    std::vector<PartSphere> part_spheres;
     uint32_t first_terrain_vertex = 0;
     // Until uploaded.
     std::vector<PackedVertex> vertices;

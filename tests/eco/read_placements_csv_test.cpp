@@ -8,7 +8,7 @@ namespace {
 Result<std::vector<Placement>> read(std::string_view text) {
     ScratchFile file("plants.csv", text);
     CsvSettings settings;
-    settings.kinds = {{"oak", {0, 2, 10.0f}}, {"fern", {2, 1, 0.0f}}};
+    settings.kinds = {{"oak", {{{0}, {1}}, 10.0f}}, {"fern", {{{2}}, 0.0f}}};
     settings.offset = dvec2(-1000.0, 0.0);
     return read_placements_csv(file.path(), settings);
 }

@@ -26,7 +26,7 @@ Region circle(double radius, dvec2 center = dvec2(0.0)) {
 
 ScatterSettings over(Region region) {
     ScatterSettings settings;
-    settings.species = {{{0, 1, 10.0f}, 1.0f}};
+    settings.species = {{{{{0}}, 10.0f}, 1.0f}};
     settings.region = std::move(region);
     return settings;
 }
@@ -161,7 +161,7 @@ TEST(Scatter, NoisyScattersFillWhatTheOtherLeaves) {
 
 TEST(Scatter, WeightsVariationsScalesAndTurnsAreDrawn) {
     ScatterSettings settings = over(rectangle(200, 200));
-    settings.species = {{{0, 3, 10.0f}, 3.0f}, {{3, 1, 5.0f}, 1.0f}};
+    settings.species = {{{{{0}, {1}, {2}}, 10.0f}, 3.0f}, {{{{3}}, 5.0f}, 1.0f}};
     settings.density_per_m2 = 1.0;
     settings.scale_low = 0.5f;
     settings.scale_high = 1.5f;

@@ -22,6 +22,16 @@ Result<uint64_t> hash_file(const std::string& path) {
     return hash_bytes(file.bytes().data(), file.bytes().size());
 }
 
+std::string cache_dir_of(const PlayOptions& options) {
+    return options.cache_dir.empty() ? default_cache_dir() : options.cache_dir;
+}
+
+SceneLoadSettings scene_load_settings(const Registry& registry, const PlayOptions& options) {
+    return {registry.find<TerrainInterface>(k_terrain_interface, k_terrain_version),
+            registry.find<ModellerInterface>(k_modeller_interface, k_modeller_version),
+            cache_dir_of(options)};
+}
+
 }  // namespace
 
 PlayHost::~PlayHost() = default;
@@ -44,8 +54,7 @@ Status PlayHost::load_scene_file(const PlayOptions& options) {
     if (is_plant_file(options.scene)) {
         scene.models = {plant_scene_model(options.scene)};
     } else {
-        const auto* terrain = registry.find<TerrainInterface>(k_terrain_interface, k_terrain_version);
-        COPPICE_TRY(scene, load_scene(options.scene, {terrain}));
+        COPPICE_TRY(scene, load_scene(options.scene, scene_load_settings(registry, options)));
     }
     if (!options.path.empty()) {
         COPPICE_TRY(scene.camera_path, load_camera_path(options.path, scene.terrain.get()));
@@ -57,14 +66,13 @@ Status PlayHost::load_scene_file(const PlayOptions& options) {
 Result<std::vector<Plant>> PlayHost::load_plants(const PlayOptions& options) {
     Stopwatch plants_clock;
     const auto* modeller = registry.find<ModellerInterface>(k_modeller_interface, k_modeller_version);
-    const std::string cache_dir = options.cache_dir.empty() ? default_cache_dir() : options.cache_dir;
     std::vector<PlantSource> sources;
     for (const SceneModel& model : scene.models) sources.push_back({model.source_path, model.variation});
     const bool textured = std::any_of(sources.begin(), sources.end(), [](const PlantSource& source) {
         return !source.path.ends_with(".json") && !source.path.ends_with(".plant");
     });
-    COPPICE_TRY(std::vector<Plant> plants, find_or_cook(cache_dir, sources, CookSettings{}, modeller,
-                                                        textured ? find_images() : nullptr));
+    COPPICE_TRY(std::vector<Plant> plants, find_or_cook(cache_dir_of(options), sources, CookSettings{},
+                                                        modeller, textured ? find_images() : nullptr));
     load.plants_ms = plants_clock.ms();
 
     Stopwatch tiles_clock;
@@ -83,7 +91,7 @@ Result<std::vector<Plant>> PlayHost::load_plants(const PlayOptions& options) {
         COPPICE_TRY(const Scene again,
                     is_plant_file(options.scene)
                         ? make_plant_scene(options.scene, bounds.front(), options.height, terrain)
-                        : load_scene(options.scene, {terrain}));
+                        : load_scene(options.scene, scene_load_settings(registry, options)));
         bare_terrain = again.terrain;
     }
     finish_tiles(scene, bounds);

@@ -1,12 +1,15 @@
 // Reads an *.eco.json scene: plants used, where they stand, terrain, sun, flight. The format is in README.md.
 #pragma once
 #include <string>
+#include "plugins/modeller/modeller.h"
 #include "plugins/vegetation/eco/scene.h"
 
 namespace coppice {
 
 struct SceneLoadSettings {
-    const TerrainInterface* terrain = nullptr;  // null: a scene with a terrain is refused
+    const TerrainInterface* terrain = nullptr;    // null: a scene with a terrain is refused
+    const ModellerInterface* modeller = nullptr;  // null: a scene with a population to quantise is refused
+    std::string cache_dir;                        // of measured populations; empty: measured each time
 };
 
 // Deterministic: same files, same scene, on any number of threads. Tiles' bounds hold only the plants' feet

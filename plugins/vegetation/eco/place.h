@@ -14,11 +14,16 @@ struct Placement {
 
 inline constexpr size_t k_plant_limit = 20'000'000;  // of a scene
 
-// A kind of plant: its individuals are the models [first_model, first_model + variation_count).
+// What an individual is drawn as: itself, or another of its kind that is scaled to its height.
+struct PlantIndividual {
+    uint32_t model = 0;
+    float scale = 1.0f;  // multiplies its placement's
+};
+
 struct PlantKind {
-    uint32_t first_model = 0;
-    uint32_t variation_count = 1;
-    float height_m = 0.0f;  // of the model at scale 1; 0: not known
+    std::vector<PlantIndividual> individuals{
+        PlantIndividual{}};  // at least one; placements get one by chance
+    float height_m = 0.0f;   // of the model at scale 1; 0: not known
 };
 
 // Upright plant turned by turn_rad about its stem, then leaning by lean_rad so that its tip moves towards

@@ -137,11 +137,12 @@ Result<std::vector<Placement>> read_placements_csv(const std::string& path, cons
         x += settings.offset.x;
         y += settings.offset.y;
         plant.position_world = dvec3(x, ground_height(settings.terrain, x, y), y);
-        plant.model.model = kind->second.first_model + random.next_below(kind->second.variation_count);
-        plant.model.seed = uint32_t(random.next_bits() >> 32);
+        const std::vector<PlantIndividual>& individuals = kind->second.individuals;
+        const PlantIndividual& individual = individuals[random.next_below(uint32_t(individuals.size()))];
+        plant.model = {individual.model, uint32_t(random.next_bits() >> 32)};
         plant.turn = pack_turn_about_y(random.next_unit() * 2.0f * k_pi);
         float scale = random.next_in(settings.scale_low, settings.scale_high);
-        plant.scale = height > 0.0 ? float(height) / kind->second.height_m : scale;
+        plant.scale = (height > 0.0 ? float(height) / kind->second.height_m : scale) * individual.scale;
         plants.push_back(plant);
     }
     if (header_fields == 0)

@@ -1,7 +1,11 @@
+#include <algorithm>
 #include <filesystem>
+#include <span>
 #include <fmt/format.h>
 #include "plugins/vegetation/eco/camera_path.h"
 #include "plugins/vegetation/eco/ground_height.h"
+#include "plugins/vegetation/eco/measure_population.h"
+#include "plugins/vegetation/eco/quantise.h"
 #include "plugins/vegetation/eco/read_placements_csv.h"
 #include "plugins/vegetation/eco/read_references.h"
 #include "plugins/vegetation/eco/read_scatter.h"
@@ -15,7 +19,11 @@ namespace coppice {
 namespace {
 
 constexpr float k_radians = k_pi / 180.0f;
-constexpr uint64_t k_variation_limit = 1024;
+
+struct Population {
+    std::string name;
+    uint32_t individual_count, first_model, model_count;
+};
 
 class SceneReader {
   public:
@@ -41,6 +49,7 @@ class SceneReader {
         const nlohmann::json* camera_path = root_.find("camera_path");
         root_.close();
         COPPICE_CHECK(document_.status());
+        COPPICE_CHECK(quantise_plants());
         if (role_ == SceneRole::referenced)
             note_what_is_left_out();
         else if (terrain)
@@ -69,23 +78,54 @@ class SceneReader {
         for (const auto& [name, ignored] : plants->items()) {
             JsonObject entry = object.object(name.c_str());
             PlantKind kind;
-            kind.first_model = uint32_t(scene_.models.size());
+            const uint32_t first_model = uint32_t(scene_.models.size());
             std::string source = entry.text("source");
-            kind.variation_count = uint32_t(entry.whole("variations", 1, k_variation_limit, 1));
+            const uint64_t variations = entry.whole("variations", 1, k_individual_limit, 1);
+            const uint64_t individuals =
+                entry.whole("individuals", variations, k_individual_limit, variations);
             kind.height_m = entry.real("height_m", 0.001f, 1000.0f, 0.0f);
             float importance = entry.real("importance", 0.001f, 1000.0f, 1.0f);
             entry.close();
-            if (kind.variation_count > 1 && !source.ends_with(".json"))
-                entry.report(ErrorId::value_out_of_range, "variations", "a model file has one shape",
-                             "variations of a species file, or leave it out");
-            if (scene_.models.size() + kind.variation_count > k_model_limit)
+            if (individuals > 1 && !source.ends_with(".json"))
+                entry.report(ErrorId::value_out_of_range, variations > 1 ? "variations" : "individuals",
+                             "a model file has one shape", "a species file, or leave it out");
+            if (scene_.models.size() + variations > k_model_limit)
                 entry.report(ErrorId::limit_exceeded, "variations", "too many models",
                              fmt::format("at most {} in all", k_model_limit));
             if (!document_.sound()) return;
-            for (uint32_t v = 0; v < kind.variation_count; ++v)
+            kind.individuals.clear();
+            for (uint32_t v = 0; v < variations; ++v) {
                 scene_.models.push_back({name, resolve(source), v, importance});
-            names_.kinds[name] = kind;
+                kind.individuals.push_back({first_model + v, 1.0f});
+            }
+            if (individuals > variations)
+                populations_.push_back({name, uint32_t(individuals), first_model, uint32_t(variations)});
+            names_.kinds[name] = std::move(kind);
         }
+    }
+
+    // Which of a population's individuals become its models, and what each of the others is drawn as.
+    Status quantise_plants() {
+        for (const Population& p : populations_) {
+            const std::span<SceneModel> models =
+                std::span(scene_.models).subspan(p.first_model, p.model_count);
+            COPPICE_TRY(const std::vector<PlantFeatures> features,
+                        measure_population({models.front().source_path, p.individual_count},
+                                           settings_.modeller, settings_.cache_dir));
+            const Quantised quantised = quantise(features, p.model_count);
+            for (uint32_t m = 0; m < p.model_count; ++m) models[m].variation = quantised.medoids[m];
+            std::vector<PlantIndividual>& individuals = names_.kinds.at(p.name).individuals;
+            individuals.clear();
+            for (uint32_t i = 0; i < p.individual_count; ++i)
+                individuals.push_back({p.first_model + quantised.medoid_of[i], quantised.scale_of[i]});
+            const auto [least, most] = std::ranges::minmax(quantised.scale_of);
+            log_note(
+                "{}: {}: {} individuals drawn as {} of them, scaled by {:.2f} to {:.2f}; error {:.2f} "
+                "spreads",
+                scene_.path, p.name, p.individual_count, p.model_count, least, most,
+                quantised.error_by_count.back());
+        }
+        return {};
     }
 
     void read_regions() {
@@ -182,11 +222,13 @@ class SceneReader {
         float bearing = entry.real("tilt_towards_deg", -360.0f, 360.0f, 0.0f) * k_radians;
         plant.turn = make_turn(turn, tilt, vec3(portable_sin(bearing), 0.0f, -portable_cos(bearing)));
         plant.scale = entry.real("scale", k_scale_least, k_scale_most, 1.0f);
-        uint32_t variations = kind ? kind->variation_count : 1;
-        uint64_t variation = entry.whole("variation", 0, variations - 1, random.next_below(variations));
+        uint32_t count = kind ? uint32_t(kind->individuals.size()) : 1;
+        uint64_t variation = entry.whole("variation", 0, count - 1, random.next_below(count));
         entry.close();
         COPPICE_CHECK(document_.status());
-        plant.model = {kind->first_model + uint32_t(variation), uint32_t(random.next_bits() >> 32)};
+        const PlantIndividual& individual = kind->individuals[variation];
+        plant.model = {individual.model, uint32_t(random.next_bits() >> 32)};
+        plant.scale *= individual.scale;
         return add({plant}, entry.place_of("plant"));
     }
 
@@ -236,6 +278,7 @@ class SceneReader {
     SceneFile file_;
     Scene& scene_ = file_.scene;
     SceneNames names_;
+    std::vector<Population> populations_;
     uint64_t plant_count_ = 0;
 };
 

@@ -50,12 +50,14 @@ class Ground {
         const PlantKind& kind = s_.species[chosen].kind;
         Placement plant;
         plant.position_world = dvec3(spot.at.x, height_at(spot.at), spot.at.y);
-        plant.model = {kind.first_model + random.next_below(kind.variation_count),
-                       uint32_t(random.next_bits() >> 32)};
+        const PlantIndividual& individual =
+            kind.individuals[random.next_below(uint32_t(kind.individuals.size()))];
+        plant.model = {individual.model, uint32_t(random.next_bits() >> 32)};
         float share = random.next_unit();
         plant.scale = s_.height_high_m > 0.0f
                           ? (s_.height_low_m + (s_.height_high_m - s_.height_low_m) * share) / kind.height_m
                           : s_.scale_low + (s_.scale_high - s_.scale_low) * share;
+        plant.scale *= individual.scale;
         float turn = random.next_unit() * 2.0f * k_pi, bearing = random.next_unit() * 2.0f * k_pi;
         float lean = s_.lean_most_rad * random.next_unit();
         vec3 tip(portable_cos(bearing) * portable_sin(lean), portable_cos(lean),

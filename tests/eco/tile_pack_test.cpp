@@ -29,11 +29,7 @@ std::string bytes_of(const std::string& path) {
 // The pack and all its blocks, or the first error.
 Status read_all(const std::string& path) {
     COPPICE_TRY(const TilePack pack, open_tile_pack(path));
-    for (uint32_t n = 0; n < pack.nodes.size(); ++n) {
-        COPPICE_CHECK(read_cloud(pack, n));
-        COPPICE_CHECK(read_plants(pack, n));
-    }
-    return {};
+    return check_blocks(pack);
 }
 
 // A pack as bytes, with its checksums made right again after a change, so that only the check of the value can refuse it.

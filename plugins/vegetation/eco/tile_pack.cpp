@@ -6,6 +6,7 @@
 #include <zstd.h>
 #include "plugins/vegetation/eco/tile_format.h"
 #include "runtime/core/hash.h"
+#include "runtime/core/jobs.h"
 
 namespace coppice {
 namespace {
@@ -194,6 +195,20 @@ Result<TilePlants> read_plants(const TilePack& pack, uint32_t node) {
         return fail(ErrorId::value_out_of_range, pack.path, place_of_block(node, TileBlockKind::plants),
                     fault, k_remedy);
     return plants;
+}
+
+Status check_blocks(const TilePack& pack) {
+    std::vector<Status> found(pack.nodes.size());
+    parallel_for(pack.nodes.size(), 8, [&](size_t first, size_t last) {
+        for (size_t n = first; n < last; ++n) {
+            if (auto cloud = read_cloud(pack, uint32_t(n)); !cloud)
+                found[n] = fail(std::move(cloud.error()));
+            else if (auto plants = read_plants(pack, uint32_t(n)); !plants)
+                found[n] = fail(std::move(plants.error()));
+        }
+    });
+    const auto bad = std::find_if(found.begin(), found.end(), [](const Status& s) { return !s; });
+    return bad == found.end() ? Status() : std::move(*bad);
 }
 
 }  // namespace coppice

@@ -14,6 +14,7 @@
 
 namespace coppice {
 
+// Of the format, and of what build_tile_tree makes of a scene: packs of another version are made again.
 inline constexpr uint32_t k_tiles_version = 1;
 inline constexpr uint32_t k_tiles_node_limit = 1u << 22;  // of a pack
 inline constexpr uint32_t k_tiles_item_limit = 1u << 20;  // points of a cloud, plants of a leaf
@@ -92,5 +93,7 @@ Result<TilePack> open_tile_pack(const std::string& path);
 Result<std::vector<PackedVertex>> read_cloud(const TilePack& pack, uint32_t node);
 // Scales are in (0, 1e5], turns of about unit length, models known.
 Result<TilePlants> read_plants(const TilePack& pack, uint32_t node);
+// Reads every block, for who keeps a pack instead of making it again. The first error in the file's order.
+Status check_blocks(const TilePack& pack);
 
 }  // namespace coppice

@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 #include <utility>
+#include "runtime/core/file_watcher.h"
 
 namespace coppice {
 
@@ -33,6 +34,7 @@ Result<MappedFile> MappedFile::open(const std::string& path) {
     } else {
         ::close(fd);
     }
+    tell_file_watcher(path);
     return file;
 }
 

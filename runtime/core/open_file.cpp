@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 #include <utility>
+#include "runtime/core/file_watcher.h"
 
 namespace coppice {
 
@@ -23,6 +24,7 @@ Result<OpenFile> OpenFile::open(const std::string& path) {
     if (::fstat(file.descriptor_, &info) != 0 || !S_ISREG(info.st_mode))
         return fail(ErrorId::file_missing, path, "", "not a regular file", "name a file");
     file.size_bytes_ = uint64_t(info.st_size);
+    tell_file_watcher(path);
     return file;
 }
 

@@ -13,5 +13,6 @@ void add_cook(CLI::App& app, Command& chosen);
 void add_inspect(CLI::App& app, Command& chosen);
 void add_play(CLI::App& app, Command& chosen);
 void add_bench(CLI::App& app, Command& chosen);
+void add_bundle(CLI::App& app, Command& chosen);
 
 }  // namespace coppice

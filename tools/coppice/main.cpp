@@ -53,6 +53,7 @@ int run(int argc, char** argv) {
     add_inspect(app, chosen);
     add_play(app, chosen);
     add_bench(app, chosen);
+    add_bundle(app, chosen);
 
     const std::vector<std::string> names = subcommand_names(app);
     const std::string first = argc < 2 ? "" : argv[1];

@@ -37,7 +37,7 @@ SceneLoadSettings scene_load_settings(const Registry& registry, const PlayOption
 PlayHost::~PlayHost() = default;
 
 Status PlayHost::load_plugins() {
-    for (const char* name : {"terrain", "modeller", "vegetation"}) COPPICE_CHECK(registry.load(name));
+    for (const char* name : k_player_plugins) COPPICE_CHECK(registry.load(name));
     return {};
 }
 

@@ -21,6 +21,9 @@
 
 namespace coppice {
 
+// Without these nothing is drawn. What only a window or other formats need is loaded where it is met.
+inline constexpr const char* k_player_plugins[] = {"terrain", "modeller", "vegetation"};
+
 class PlayHost {
   public:
     // Loads everything the options name: a scene, or a plant with a scene made for it. The device comes

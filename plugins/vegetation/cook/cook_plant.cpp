@@ -9,8 +9,8 @@
 #include "plugins/vegetation/cook/classify.h"
 #include "plugins/vegetation/cook/clean_mesh.h"
 #include "plugins/vegetation/cook/closed_share.h"
+#include "plugins/vegetation/cook/cut_part.h"
 #include "plugins/vegetation/cook/importance.h"
-#include "plugins/vegetation/cook/join_cells.h"
 #include "plugins/vegetation/cook/measure_coverage.h"
 #include "plugins/vegetation/cook/measure_projection.h"
 #include "plugins/vegetation/cook/merge_parts.h"
@@ -39,17 +39,18 @@ SampleSettings sample_settings(const CookSettings& settings, uint64_t seed) {
     return {settings.sampler, settings.order, settings.points_per_triangle, seed};
 }
 
-// Appends one part, or one cell of a part, to a plant's parts, but for its coverage gain. seed: of this one.
+// Appends one part to the plant. seed, line_limit: of this part.
 class PartPacker {
   public:
     PartPacker(const CookPart& part, float importance, const OpennessGrid& openness,
-               const CookSettings& settings, uint64_t seed, PlantBlocks& plant)
+               const CookSettings& settings, uint64_t seed, uint64_t line_limit, PlantBlocks& plant)
         : part_(part),
           importance_(importance),
           mesh_(part.shape.part),
           openness_(openness),
           settings_(settings),
           seed_(seed),
+          line_limit_(line_limit),
           plant_(plant),
           dither_seed_(uint32_t(seed)) {}
 
@@ -76,10 +77,17 @@ class PartPacker {
             packed_.bounds_min[axis] = bounds_.min[axis];
             packed_.bounds_max[axis] = bounds_.max[axis];
         }
+        packed_.coverage_gain = measure_coverage_gain(
+            packed_, std::span(plant_.triangle_vertices).subspan(3 * size_t(packed_.first_triangle)),
+            std::span(plant_.points).subspan(packed_.first_point),
+            std::span(plant_.line_vertices).subspan(2 * size_t(packed_.first_line)));
         plant_.bounds_plant.include(bounds_);
         plant_.parts.push_back(packed_);
         return {};
     }
+
+    // Of triangles and lines as packed; empty where there are no lines.
+    std::vector<uint32_t> take_line_of_triangle() { return std::move(line_of_triangle_); }
 
   private:
     const DescriptionVertex& corner(size_t triangle, size_t k) const {
@@ -167,7 +175,7 @@ class PartPacker {
 
     Status pack_lines() {
         TracedLines traced = trace_lines(mesh_, part_.shape.skeleton);
-        if (traced.lines.size() > settings_.primitive_limit - plant_.line_vertices.size() / 2)
+        if (traced.lines.size() > line_limit_)
             return fail(ErrorId::limit_exceeded, plant_.name, mesh_.name, "too many lines",
                         fmt::format("at most {} in a plant", settings_.primitive_limit));
         std::vector<vec3> centers, ends;
@@ -189,6 +197,11 @@ class PartPacker {
         std::vector<uint32_t> curve = order_along_curve(centers);
         std::vector<uint32_t> places =
             make_prefix_order(uint32_t(curve.size()), settings_.order, hash_combine(seed_, 3));
+        std::vector<uint32_t> place_of(curve.size());
+        for (uint32_t i = 0; i < places.size(); ++i) place_of[curve[places[i]]] = i;
+        if (!place_of.empty())
+            for (uint32_t t : triangle_order_)
+                line_of_triangle_.push_back(place_of[traced.line_of_triangle[t]]);
         for (size_t i = 0; i < places.size(); ++i) {
             const TracedLine& line = traced.lines[curve[places[i]]];
             vec3 along = normalize_or(line.end_plant - line.begin_plant, vec3(0, 1, 0));
@@ -217,54 +230,43 @@ class PartPacker {
     const PartDescription& mesh_;
     const OpennessGrid& openness_;
     const CookSettings& settings_;
-    uint64_t seed_;
+    uint64_t seed_, line_limit_;
     PlantBlocks& plant_;
     uint32_t dither_seed_;
     PackedPart packed_{};
     Box bounds_;
     std::vector<uint32_t> curve_, triangle_order_;  // indices of the mesh's triangles
+    std::vector<uint32_t> line_of_triangle_;
 };
-
-// Of the parts from first_part on, a part alone or the cells of one: measured together, because cells hide one another
-// as the part's pieces do, and drawn far away must cover together what the part covers.
-void set_coverage_gain(PlantBlocks& plant, size_t first_part) {
-    const std::span<PackedPart> cells = std::span(plant.parts).subspan(first_part);
-    const PackedPart& first = cells.front();
-    const auto gain = measure_coverage_gain(
-        cells, std::span(plant.triangle_vertices).subspan(3 * size_t(first.first_triangle)),
-        std::span(plant.points).subspan(first.first_point),
-        std::span(plant.line_vertices).subspan(2 * size_t(first.first_line)));
-    for (PackedPart& cell : cells) cell.coverage_gain = gain;
-}
 
 template <class T>
 void append(std::vector<T>& to, const std::vector<T>& items) {
     to.insert(to.end(), items.begin(), items.end());
 }
 
-// A part that was cut: joined into one part of the plant. The cells are kept for later, with their ranges of points and
-// lines within `cells`, because these follow all parts'.
-void add_cut_part(const PlantBlocks& packed, std::span<const CookPart> meshes, PlantBlocks& plant,
-                  PlantBlocks& cells) {
-    JoinedCells joined = join_cells(packed, meshes);
-    joined.part.first_triangle = uint32_t(plant.triangle_vertices.size() / 3);
-    joined.part.first_point = uint32_t(plant.points.size());
-    joined.part.first_line = uint32_t(plant.line_vertices.size() / 2);
-    for (PackedPart cell : packed.parts) {
+// The part of `packed` behind the plant's, its cells behind those kept for later in `cells`: their points and lines
+// follow all parts'.
+void add_part(const PlantBlocks& packed, const PlantBlocks& its_cells, PlantBlocks& plant,
+              PlantBlocks& cells) {
+    PackedPart part = packed.parts[0];
+    part.first_triangle = uint32_t(plant.triangle_vertices.size() / 3);
+    part.first_point = uint32_t(plant.points.size());
+    part.first_line = uint32_t(plant.line_vertices.size() / 2);
+    for (PackedPart cell : its_cells.cells) {
         cell.part = uint32_t(plant.parts.size());
-        cell.first_triangle += joined.part.first_triangle;
+        cell.first_triangle += part.first_triangle;
         cell.first_point += uint32_t(cells.points.size());
         cell.first_line += uint32_t(cells.line_vertices.size() / 2);
         cells.cells.push_back(cell);
     }
-    plant.parts.push_back(joined.part);
+    plant.parts.push_back(part);
     append(plant.triangle_vertices, packed.triangle_vertices);
-    append(plant.points, joined.points);
-    append(plant.point_owners, joined.point_owners);
-    append(plant.line_vertices, joined.line_vertices);
-    append(cells.points, packed.points);
-    append(cells.point_owners, packed.point_owners);
-    append(cells.line_vertices, packed.line_vertices);
+    append(plant.points, packed.points);
+    append(plant.point_owners, packed.point_owners);
+    append(plant.line_vertices, packed.line_vertices);
+    append(cells.points, its_cells.points);
+    append(cells.point_owners, its_cells.point_owners);
+    append(cells.line_vertices, its_cells.line_vertices);
     plant.bounds_plant.include(packed.bounds_plant);
 }
 
@@ -343,37 +345,43 @@ Result<std::vector<std::byte>> cook_plant(const PlantDescription& plant, const C
         parts = merge_parts(std::move(parts));
     }
 
-    std::vector<ColoredArea> colors;
-    for (const CookPart& part : parts)
-        colors.push_back({part.mean_color_linear, part.area_m2, part.shape.part.importance});
-    std::vector<float> importance = choose_importance(colors);
-    std::vector<std::vector<CookPart>> cells_of_part = build_octree(std::move(parts));
     uint64_t point_count = 0;
-    for (const auto& cells : cells_of_part)
-        for (const CookPart& cell : cells)
-            if (cell.shape.part.kind == PartKind::points)
-                point_count += count_points(cell.shape.part, sample_settings(settings, 0));
+    std::vector<ColoredArea> colors;
+    for (const CookPart& part : parts) {
+        const PartDescription& mesh = part.shape.part;
+        if (mesh.kind == PartKind::points) point_count += count_points(mesh, sample_settings(settings, 0));
+        colors.push_back({part.mean_color_linear, part.area_m2, mesh.importance});
+    }
     if (point_count > settings.primitive_limit)
         return fail(ErrorId::limit_exceeded, plant.name, "", fmt::format("{} points", point_count),
                     fmt::format("at most {} a plant: fewer points a triangle", settings.primitive_limit));
+    std::vector<float> importance = choose_importance(colors);
+    std::vector<PlantBlocks> packed(parts.size());
+    std::vector<std::vector<uint32_t>> line_of_triangle;
+    std::vector<OctreeUnits> units;
+    Box bounds_plant;
+    uint64_t line_count = 0;
+    for (size_t i = 0; i < parts.size(); ++i) {
+        packed[i].name = plant.name;
+        PartPacker packer(parts[i], importance[i], openness, settings, hash_combine(settings.seed, i),
+                          settings.primitive_limit - line_count, packed[i]);
+        COPPICE_CHECK(packer.run());
+        line_count += packed[i].line_vertices.size() / 2;
+        line_of_triangle.push_back(packer.take_line_of_triangle());
+        units.push_back(list_units(packed[i], line_of_triangle[i]));
+        bounds_plant.include(packed[i].bounds_plant);
+        advance(parts[i].shape.part.indices.size() / 3);
+        parts[i] = {};
+    }
+    const std::vector<std::vector<uint32_t>> cell_of_unit = build_octree(units, bounds_plant);
     PlantBlocks cells;
-    cells.name = plant.name;
-    for (size_t i = 0; i < cells_of_part.size(); ++i) {
-        const std::vector<CookPart>& meshes = cells_of_part[i];
-        const bool is_cut = meshes.size() > 1;
-        const uint64_t seed = hash_combine(settings.seed, i);
-        PlantBlocks packed_cells;
-        packed_cells.name = plant.name;
-        PlantBlocks& target = is_cut ? packed_cells : blocks;
-        const size_t first_part = target.parts.size();
-        for (size_t c = 0; c < meshes.size(); ++c) {
-            COPPICE_CHECK(PartPacker(meshes[c], importance[i], openness, settings,
-                                     is_cut ? hash_combine(seed, c) : seed, target)
-                              .run());
-            advance(meshes[c].shape.part.indices.size() / 3);
-        }
-        set_coverage_gain(target, first_part);
-        if (is_cut) add_cut_part(packed_cells, meshes, blocks, cells);
+    for (size_t i = 0; i < packed.size(); ++i) {
+        const bool is_cut =
+            std::any_of(cell_of_unit[i].begin(), cell_of_unit[i].end(), [](uint32_t c) { return c > 0; });
+        PlantBlocks its_cells;
+        if (is_cut) its_cells = cut_part(packed[i], cell_of_unit[i], line_of_triangle[i]);
+        add_part(packed[i], its_cells, blocks, cells);
+        packed[i] = {};
     }
     add_cells(cells, blocks);
     return pack_plant(blocks);

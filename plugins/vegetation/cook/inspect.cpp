@@ -1,5 +1,6 @@
 #include "plugins/vegetation/cook/inspect.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include "plugins/vegetation/plant/direction_form.h"
@@ -19,31 +20,42 @@ const char* name_of_kind(const PackedPart& part) {
     return part.kind == PackedPartKind::lines ? "lines" : "points";
 }
 
+ptrdiff_t cell_count(const Plant& plant, const PackedPart& part) {
+    const auto index = uint32_t(&part - plant.parts.data());
+    return std::count_if(plant.cells.begin(), plant.cells.end(),
+                         [index](const PackedPart& cell) { return cell.part == index; });
+}
+
 }  // namespace
 
 std::string inspect_plant(const Plant& plant) {
     vec3 size = plant.bounds_plant.size();
     std::string text = fmt::format(
-        "{}: {} parts, {} triangles, {} points, {} lines; {:.2f} x {:.2f} x {:.2f} m; content {}\n",
-        plant.name, plant.parts.size(), plant.triangle_vertices.size() / 3, plant.points.size(),
-        plant.line_vertices.size() / 2, size.x, size.y, size.z, hash_to_hex(plant.content_hash));
-    text += fmt::format("{:<16} {:<6} {:<6} {:>9} {:>9} {:>7} {:>9} {:>9} {:>8} {:>6} {:>9} {:>9} {:>8}\n",
-                        "part", "far as", "sides", "triangles", "points", "lines", "area m2", "length m",
-                        "eps_l mm", "import", "above m2", "beside m2", "colour");
-    for (const PackedPart& part : plant.parts) {
-        const char* sides = part.flags & k_part_closed ? "closed" : part.flags & k_part_leaf ? "leaf" : "open";
-        text += fmt::format(
-            "{:<16} {:<6} {:<6} {:>9} {:>9} {:>7} {:>9.3f} {:>9.2f} {:>8.2f} {:>6.2f} {:>9.3f} {:>9.3f} "
-            "{:>8}\n",
-            part.name, name_of_kind(part), sides, part.triangle_count, part.point_count, part.line_count,
-            part.area_m2, part.line_length_m, part.line_error_m * 1000.0f, part.importance,
-            part.projected_area_m2.evaluate(vec3(0, 1, 0)), part.projected_area_m2.evaluate(vec3(1, 0, 0)),
-            srgb_hex(part.mean_color_linear));
-    }
+        "{}: {} parts, {} cells, {} triangles, {} points, {} lines; {:.2f} x {:.2f} x {:.2f} m; content {}\n",
+        plant.name, plant.parts.size(), plant.cells.size(), plant.triangle_vertices.size() / 3,
+        plant.points.size(), plant.line_vertices.size() / 2, size.x, size.y, size.z,
+        hash_to_hex(plant.content_hash));
     text +=
-        fmt::format("bytes: parts {}, triangle vertices {}, points {}, point owners {}, line vertices {}\n",
-                    plant.parts.size_bytes(), plant.triangle_vertices.size_bytes(), plant.points.size_bytes(),
-                    plant.point_owners.size_bytes(), plant.line_vertices.size_bytes());
+        fmt::format("{:<16} {:<6} {:<6} {:>5} {:>9} {:>9} {:>7} {:>9} {:>9} {:>8} {:>6} {:>9} {:>9} {:>8}\n",
+                    "part", "far as", "sides", "cells", "triangles", "points", "lines", "area m2", "length m",
+                    "eps_l mm", "import", "above m2", "beside m2", "colour");
+    for (const PackedPart& part : plant.parts) {
+        const char* sides = part.flags & k_part_closed ? "closed"
+                            : part.flags & k_part_leaf ? "leaf"
+                                                       : "open";
+        text += fmt::format(
+            "{:<16} {:<6} {:<6} {:>5} {:>9} {:>9} {:>7} {:>9.3f} {:>9.2f} {:>8.2f} {:>6.2f} {:>9.3f} "
+            "{:>9.3f} "
+            "{:>8}\n",
+            part.name, name_of_kind(part), sides, cell_count(plant, part), part.triangle_count,
+            part.point_count, part.line_count, part.area_m2, part.line_length_m, part.line_error_m * 1000.0f,
+            part.importance, part.projected_area_m2.evaluate(vec3(0, 1, 0)),
+            part.projected_area_m2.evaluate(vec3(1, 0, 0)), srgb_hex(part.mean_color_linear));
+    }
+    text += fmt::format(
+        "bytes: parts {}, cells {}, triangle vertices {}, points {}, point owners {}, line vertices {}\n",
+        plant.parts.size_bytes(), plant.cells.size_bytes(), plant.triangle_vertices.size_bytes(),
+        plant.points.size_bytes(), plant.point_owners.size_bytes(), plant.line_vertices.size_bytes());
     if (plant.dropped_triangles || plant.dropped_vertices)
         text +=
             fmt::format("dropped when cooked: {} triangles without area, {} vertices without a triangle\n",
@@ -62,6 +74,7 @@ std::string inspect_plant_json(const Plant& plant) {
                          {"closed", (part.flags & k_part_closed) != 0},
                          {"leaf", (part.flags & k_part_leaf) != 0},
                          {"importance", part.importance},
+                         {"cells", cell_count(plant, part)},
                          {"triangles", part.triangle_count},
                          {"points", part.point_count},
                          {"lines", part.line_count},
@@ -81,6 +94,7 @@ std::string inspect_plant_json(const Plant& plant) {
                          {"content_hash", hash_to_hex(plant.content_hash)},
                          {"bounds_min_m", {low.x, low.y, low.z}},
                          {"bounds_max_m", {high.x, high.y, high.z}},
+                         {"cells", plant.cells.size()},
                          {"triangles", plant.triangle_vertices.size() / 3},
                          {"points", plant.points.size()},
                          {"lines", plant.line_vertices.size() / 2},
@@ -88,6 +102,7 @@ std::string inspect_plant_json(const Plant& plant) {
                          {"dropped_vertices", plant.dropped_vertices},
                          {"bytes",
                           {{"parts", plant.parts.size_bytes()},
+                           {"cells", plant.cells.size_bytes()},
                            {"triangle_vertices", plant.triangle_vertices.size_bytes()},
                            {"points", plant.points.size_bytes()},
                            {"point_owners", plant.point_owners.size_bytes()},

@@ -42,12 +42,9 @@ View view_of(uint32_t index, uint32_t count) {
 
 class PartCoverage {
   public:
-    PartCoverage(std::span<const PackedPart> cells, std::span<const PackedVertex> triangle_vertices,
+    PartCoverage(const PackedPart& part, std::span<const PackedVertex> triangle_vertices,
                  std::span<const PackedVertex> points, std::span<const PackedVertex> line_vertices)
-        : cells_(cells),
-          triangle_vertices_(triangle_vertices),
-          points_(points),
-          line_vertices_(line_vertices) {
+        : part_(part), triangle_vertices_(triangle_vertices), points_(points), line_vertices_(line_vertices) {
         for (const PackedVertex& v : triangle_vertices)
             bounds_.include(vec3(v.x_plant, v.y_plant, v.z_plant));
         for (const PackedVertex& v : line_vertices) bounds_.include(vec3(v.x_plant, v.y_plant, v.z_plant));
@@ -58,7 +55,7 @@ class PartCoverage {
         float radius_px = 0.5f * glm::length(bounds_.size()) * pixels_per_meter;
         uint32_t side = uint32_t(std::min(2.0f * radius_px + 6.0f, float(k_side_limit) + 1.0f));
         if (area_px2 < k_least_area_px2 || side > k_side_limit) return 0.0f;
-        double by_cost = k_triangle_budget / double(triangle_vertices_.size() / 3 + 1);
+        double by_cost = k_triangle_budget / double(part_.triangle_count + 1);
         uint32_t views = uint32_t(std::clamp(std::min(k_wanted_pixels / double(area_px2), by_cost),
                                              double(k_least_views), double(k_most_views)));
         if (double(views) * double(area_px2) < k_least_pixels) return 0.0f;
@@ -96,50 +93,39 @@ class PartCoverage {
     // What lod/choose_part.cpp would draw at a sample distance of one pixel, were there no triangles.
     uint64_t reduced(CoverageRaster& raster, const View& view, float pixels_per_meter, uint32_t side,
                      float gain) const {
-        raster.begin();
-        float chance = view.chance;
-        for (const PackedPart& cell : cells_) {
-            draw_cell(raster, view, pixels_per_meter, side, gain, cell, chance);
-            chance += 0.61803399f;  // cells round up and down by turns
-            chance -= std::floor(chance);
-        }
-        return raster.covered();
-    }
-    void draw_cell(CoverageRaster& raster, const View& view, float pixels_per_meter, uint32_t side,
-                   float gain, const PackedPart& cell, float chance) const {
         vec3 direction = glm::cross(view.up, view.right);
-        float area = gain * cell.projected_area_m2.evaluate(direction) * pixels_per_meter * pixels_per_meter;
-        if (cell.point_count > 0) {
-            auto points = points_.subspan(cell.first_point - cells_[0].first_point, cell.point_count);
-            float stored = float(points.size()), p = std::min(cell.importance * area, stored);
+        float area = gain * part_.projected_area_m2.evaluate(direction) * pixels_per_meter * pixels_per_meter;
+        raster.begin();
+        if (!points_.empty()) {
+            float stored = float(points_.size()), p = std::min(part_.importance * area, stored);
             // lod/choose_part.cpp: squares by |n . v|
-            float sides = cell.flags & k_part_closed ? 2.0f : 1.0f;
-            float facing = std::min(sides * cell.projected_area_m2.evaluate(direction) / cell.area_m2, 1.0f);
+            float sides = part_.flags & k_part_closed ? 2.0f : 1.0f;
+            float facing =
+                std::min(sides * part_.projected_area_m2.evaluate(direction) / part_.area_m2, 1.0f);
             float splat_area = area / std::max(p * facing, 1.0e-6f);
-            size_t count = std::min(points.size(), size_t(p + chance));
+            size_t count = std::min(points_.size(), size_t(p + view.chance));
             for (size_t i = 0; i < count; ++i)
-                raster.square(place(view, points[i], pixels_per_meter, side),
-                              std::sqrt(splat_area * facing_of(points[i], direction)));
+                raster.square(place(view, points_[i], pixels_per_meter, side),
+                              std::sqrt(splat_area * facing_of(points_[i], direction)));
         } else {
-            auto lines = line_vertices_.subspan(2 * size_t(cell.first_line - cells_[0].first_line),
-                                                2 * size_t(cell.line_count));
-            float length = cell.projected_length_m.evaluate(direction) * pixels_per_meter;
-            float q = std::min(cell.importance * area / std::max(length, 1.0e-6f), 1.0f),
-                  stored = float(cell.line_count);
-            size_t count = std::min(size_t(cell.line_count), size_t(q * stored + chance));
+            float length = part_.projected_length_m.evaluate(direction) * pixels_per_meter;
+            float q = std::min(part_.importance * area / std::max(length, 1.0e-6f), 1.0f),
+                  stored = float(line_vertices_.size() / 2);
+            size_t count = std::min(line_vertices_.size() / 2, size_t(q * stored + view.chance));
             float width = area / std::max(length * q, 1.0e-6f);
             for (size_t i = 0; i < count; ++i)
-                raster.line(place(view, lines[2 * i], pixels_per_meter, side),
-                            place(view, lines[2 * i + 1], pixels_per_meter, side),
-                            width * std::bit_cast<float>(lines[2 * i + 1].surface));
+                raster.line(place(view, line_vertices_[2 * i], pixels_per_meter, side),
+                            place(view, line_vertices_[2 * i + 1], pixels_per_meter, side),
+                            width * std::bit_cast<float>(line_vertices_[2 * i + 1].surface));
         }
+        return raster.covered();
     }
 
     static float facing_of(const PackedVertex& vertex, vec3 direction) {
         return std::fabs(glm::dot(decode_surface(vertex.surface).normal, direction));
     }
 
-    std::span<const PackedPart> cells_;
+    const PackedPart& part_;
     std::span<const PackedVertex> triangle_vertices_, points_, line_vertices_;
     Box bounds_;
 };
@@ -155,19 +141,16 @@ float mean_over_views(const DirectionForm& form) {
 
 }  // namespace
 
-std::array<float, k_gain_levels> measure_coverage_gain(std::span<const PackedPart> cells,
+std::array<float, k_gain_levels> measure_coverage_gain(const PackedPart& part,
                                                        std::span<const PackedVertex> triangle_vertices,
                                                        std::span<const PackedVertex> points,
                                                        std::span<const PackedVertex> line_vertices) {
     std::array<float, k_gain_levels> gains;
     gains.fill(1.0f);
-    float area_m2 = 0.0f, length_m = 0.0f;
-    for (const PackedPart& cell : cells) {
-        area_m2 += mean_over_views(cell.projected_area_m2);
-        length_m += mean_over_views(cell.projected_length_m);
-    }
+    float area_m2 = mean_over_views(part.projected_area_m2),
+          length_m = mean_over_views(part.projected_length_m);
     if (!(area_m2 > 0.0f) || (points.empty() && !(line_vertices.size() > 1 && length_m > 0.0f))) return gains;
-    PartCoverage coverage(cells, triangle_vertices, points, line_vertices);
+    PartCoverage coverage(part, triangle_vertices, points, line_vertices);
     std::array<float, k_gain_levels> measured{};
     parallel_for(k_gain_levels, 1, [&](size_t first, size_t last) {
         for (size_t level = first; level < last; ++level) {

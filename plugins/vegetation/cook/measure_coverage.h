@@ -11,10 +11,9 @@
 
 namespace coppice {
 
-// Of one part, or of all octree cells of one part together, which follow each other; vertices as the first one's
-// triangles, points and lines and all behind them have them (plant.h). Draws them on the CPU by the rules of the kernels,
-// from directions over the upper hemisphere, at one pixel of sample distance. Pure.
-std::array<float, k_gain_levels> measure_coverage_gain(std::span<const PackedPart> cells,
+// Vertices as the part's triangles, points and lines have them (plant.h). Draws the part on the CPU by the
+// rules of the kernels, from directions over the upper hemisphere, at one pixel of sample distance. Pure.
+std::array<float, k_gain_levels> measure_coverage_gain(const PackedPart& part,
                                                        std::span<const PackedVertex> triangle_vertices,
                                                        std::span<const PackedVertex> points,
                                                        std::span<const PackedVertex> line_vertices);

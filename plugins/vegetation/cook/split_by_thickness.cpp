@@ -1,7 +1,6 @@
 #include "plugins/vegetation/cook/split_by_thickness.h"
 
 #include <algorithm>
-#include <fmt/format.h>
 #include "plugins/vegetation/cook/trace_lines.h"
 #include "plugins/vegetation/cook/triangle_areas.h"
 
@@ -14,6 +13,38 @@ constexpr uint32_t k_class_limit = 3;
 constexpr size_t k_least_triangles = 64;
 
 float radius_of(const SkeletonSegment& s) { return 0.5f * (s.begin_radius_m + s.end_radius_m); }
+
+// The triangles and segments of one class, without the vertices it does not use.
+SlenderPart take_class(const SlenderPart& whole, const std::vector<uint32_t>& class_of_segment,
+                       uint32_t thickness) {
+    SlenderPart piece;
+    piece.part.name =
+        thickness == 0 ? whole.part.name : whole.part.name + "/" + std::to_string(1u << 2 * thickness);
+    piece.part.kind = whole.part.kind;
+    piece.part.leaf = whole.part.leaf;
+    piece.part.importance = whole.part.importance;
+    std::vector<uint32_t> new_segment(whole.skeleton.segments.size());
+    for (size_t s = 0; s < new_segment.size(); ++s) {
+        new_segment[s] = uint32_t(piece.skeleton.segments.size());
+        if (class_of_segment[s] == thickness) piece.skeleton.segments.push_back(whole.skeleton.segments[s]);
+    }
+    constexpr uint32_t k_unused = UINT32_MAX;
+    std::vector<uint32_t> new_vertex(whole.part.vertices.size(), k_unused);
+    for (size_t t = 0; t < whole.skeleton.triangle_segment.size(); ++t) {
+        uint32_t segment = whole.skeleton.triangle_segment[t];
+        if (class_of_segment[segment] != thickness) continue;
+        piece.skeleton.triangle_segment.push_back(new_segment[segment]);
+        for (size_t k = 0; k < 3; ++k) {
+            uint32_t v = whole.part.indices[3 * t + k];
+            if (new_vertex[v] == k_unused) {
+                new_vertex[v] = uint32_t(piece.part.vertices.size());
+                piece.part.vertices.push_back(whole.part.vertices[v]);
+            }
+            piece.part.indices.push_back(new_vertex[v]);
+        }
+    }
+    return piece;
+}
 
 }  // namespace
 
@@ -72,14 +103,9 @@ std::vector<SlenderPart> split_by_thickness(SlenderPart whole) {
     for (uint32_t o = 0; o < k_class_limit; ++o)
         joined[o] = o > 0 && triangle_count[o] < worth ? joined[o - 1] : o;
     for (uint32_t& o : thickness) o = joined[o];
-    std::vector<uint32_t> thickness_of_triangle;
-    for (uint32_t segment : whole.skeleton.triangle_segment)
-        thickness_of_triangle.push_back(thickness[segment]);
-    std::vector<SlenderPart> classes = take_pieces(whole, thickness_of_triangle, thickness, k_class_limit);
     for (uint32_t o = 0; o < k_class_limit; ++o) {
-        if (classes[o].part.indices.empty()) continue;
-        if (o > 0) classes[o].part.name += fmt::format("/{}", 1u << 2 * o);
-        pieces.push_back(std::move(classes[o]));
+        SlenderPart piece = take_class(whole, thickness, o);
+        if (!piece.part.indices.empty()) pieces.push_back(std::move(piece));
     }
     return pieces;
 }

@@ -4,9 +4,14 @@
 // most of the surface.)
 #pragma once
 #include <vector>
-#include "plugins/vegetation/cook/take_pieces.h"
+#include "plugins/vegetation/cook/trace_skeleton.h"
 
 namespace coppice {
+
+struct SlenderPart {
+    PartDescription part;
+    TracedSkeleton skeleton;
+};
 
 // One part where the radii (1st to 99th percentile by area) differ by less than a factor of 4, else up to 3;
 // no piece but the thickest has fewer than 64 triangles or 5 % of them. Triangles and segments are shared

@@ -236,19 +236,25 @@ TracedLines trace_lines(const PartDescription& part, const TracedSkeleton& skele
 
     share_widths(traced);
 
+    traced.line_of_triangle.resize(traced.lines.empty() ? 0 : areas.size());
     std::vector<std::pair<float, uint32_t>> errors(areas.size());  // of each triangle: its farthest corner's
     parallel_for(areas.size(), 1 << 12, [&](size_t begin, size_t end) {
         for (size_t t = begin; t < end; ++t) {
             uint32_t stem = stem_of_segment[skeleton.triangle_segment[t]];
             float error = 0.0f;
+            uint32_t nearest_line = std::min(first_line[stem], uint32_t(traced.lines.size()) - 1);
             for (size_t k = 0; k < 3; ++k) {
                 vec3 p = part.vertices[part.indices[3 * t + k]].position_plant;
                 float nearest = INFINITY;
-                for (uint32_t l = first_line[stem]; l < first_line[stem + 1]; ++l)
-                    nearest = std::min(nearest, distance_to_segment(p, traced.lines[l].begin_plant,
-                                                                    traced.lines[l].end_plant));
+                for (uint32_t l = first_line[stem]; l < first_line[stem + 1]; ++l) {
+                    const float distance =
+                        distance_to_segment(p, traced.lines[l].begin_plant, traced.lines[l].end_plant);
+                    if (distance < nearest && k == 0) nearest_line = l;
+                    nearest = std::min(nearest, distance);
+                }
                 if (nearest < INFINITY) error = std::max(error, nearest);
             }
+            if (!traced.lines.empty()) traced.line_of_triangle[t] = nearest_line;
             errors[t] = {error, uint32_t(t)};
         }
     });

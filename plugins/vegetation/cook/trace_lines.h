@@ -19,7 +19,8 @@ struct TracedLines {
     std::vector<TracedLine> lines;  // along the stems
     float length_m = 0.0f;          // l
     float error_m = 0.0f;  // eps_l: within it lie 99.5 % of the surface; the rest are caps and collars
-    float largest_error_m = 0.0f;  // of all of it
+    float largest_error_m = 0.0f;            // of all of it
+    std::vector<uint32_t> line_of_triangle;  // the nearest one of its stem; empty where there are no lines
 };
 
 // As few lines of about equal length as follow the stems within a quarter of their radius, and no more than

@@ -36,8 +36,17 @@ struct Tile {
     static constexpr const char* k_component_name = "tile";
     dvec3 origin_world;
     Box bounds_tile;
-    float largest_plant_radius_m = 0.0f;
     uint32_t plant_count = 0;
+};
+
+// What stands for a tile in the distance, and what it consists of; beside Tile. All tiles of a scene are one chunk, row 0
+// holds all others, and a tile's children follow each other.
+struct TileLevels {
+    static constexpr const char* k_component_name = "tile levels";
+    uint32_t cloud = 0;                         // of the scene's clouds
+    uint32_t first_child = 0, child_count = 0;  // rows; none: its plants are a chunk that it owns
+    float finest_density = 0.0f;                // the cloud suffices up to (pixels a metre / d')^2
+    uint64_t triangle_count = 0;                // of all its plants
 };
 
 struct Camera {

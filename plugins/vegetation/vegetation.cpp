@@ -1,7 +1,7 @@
 // READ FIRST. Registers the components, systems and passes, in order of execution:
 //
-//   cull    list_tiles      cull/     tiles in view, nearest first
-//   lod     expand_plants   lod/      which primitives of each plant's parts; draw/ writes them down, in parallel
+//   cull    list_tiles      cull/     tiles in view, nearest first, down to those whose clouds suffice
+//   lod     expand_plants   lod/      which primitives of each plant's parts and of clouds; draw/ writes them down, in parallel
 //   draw    write_work_list draw/     the jobs' lists, one behind the other, into the mapped buffers
 //   report  count           report/   what was drawn
 //   passes  clear, triangles, big triangles, lines, points ..., resolve: draw/rasteriser.cpp
@@ -35,7 +35,8 @@ class VegetationSystems final : public Vegetation {
                     Rasteriser::create(*settings_.device, *settings_.frame_graph, settings_.frame_slots,
                                        settings_.width, settings_.height));
         Schedule& schedule = *settings_.schedule;
-        schedule.add(Phase::cull, 0, "list_tiles", [this](TileList::Plants plants) { list_tiles(plants); });
+        schedule.add(Phase::cull, 0, "list_tiles",
+                     [this](TileList::Tiles tiles, TileList::Plants plants) { list_tiles(tiles, plants); });
         // The runs point into the plants' columns, so this reads them too.
         schedule.add(Phase::lod, 0, "expand_plants", [this](TileList::Plants) { expand(); });
         schedule.add(Phase::draw, 0, "write_work_list", [this](TileList::Plants) { write_work_list(); });
@@ -45,7 +46,8 @@ class VegetationSystems final : public Vegetation {
 
     Status set_scene(const Scene& scene, std::vector<Plant> plants) override {
         COPPICE_CHECK(check_scene(scene, plants.size()));
-        COPPICE_TRY(SceneGeometry geometry, gather_geometry(scene, plants));
+        const std::vector<TileNode> tree = build_tile_tree(scene, plants);
+        COPPICE_TRY(SceneGeometry geometry, gather_geometry(scene, plants, tree));
         drop_scene();
         COPPICE_CHECK(rasteriser_->set_geometry({geometry.vertices, geometry.owners}));
         geometry.vertices = {};
@@ -53,30 +55,7 @@ class VegetationSystems final : public Vegetation {
         geometry_ = std::move(geometry);
         terrain_ = scene.terrain;
         light_ = scene.light;
-        for (const SceneTile& source : scene.tiles) {
-            if (source.plant_count == 0) continue;
-            Tile tile = source.tile;
-            tile.plant_count = source.plant_count;
-            Entity owner = settings_.world->create(tile);
-            tiles_.push_back(owner);
-            auto [chunk, positions, turns, models] =
-                settings_.world->create_chunk<PlantPosition, PlantTurn, PlantModel>(source.plant_count,
-                                                                                    owner);
-            if (!chunk) {
-                drop_scene();
-                return fail(ErrorId::limit_exceeded, scene.path, "tiles", "no room for another tile",
-                            "place fewer plants");
-            }
-            chunks_.push_back(chunk);
-            for (uint32_t i = 0; i < source.plant_count; ++i) {
-                size_t plant = source.first_plant + i;
-                positions[i] = scene.positions[plant];
-                turns[i] = scene.turns[plant];
-                models[i] = scene.plant_models[plant];
-                scene_triangles_ += geometry_.models[models[i].model].triangle_count;
-            }
-        }
-        return {};
+        return add_tiles(scene, tree);
     }
 
     Status resize(uint32_t width, uint32_t height) override {
@@ -120,10 +99,45 @@ class VegetationSystems final : public Vegetation {
         return {};
     }
 
+    // All tiles in one chunk; each leaf owns the chunk of its plants.
+    Status add_tiles(const Scene& scene, std::span<const TileNode> tree) {
+        auto refused = [&] {
+            drop_scene();
+            return fail(ErrorId::limit_exceeded, scene.path, "tiles", "no room for another tile",
+                        "place fewer plants");
+        };
+        if (tree.empty()) return {};
+        auto [tile_chunk, tiles, levels] =
+            settings_.world->create_chunk<Tile, TileLevels>(uint32_t(tree.size()));
+        if (!tile_chunk) return refused();
+        chunks_.push_back(tile_chunk);
+        for (size_t row = tree.size(); row-- > 0;) {  // children before their parents
+            const TileNode& node = tree[row];
+            tiles[row] = {node.origin_world, node.bounds_tile, node.plant_count};
+            levels[row] = {uint32_t(row), node.first_child, node.child_count, node.cloud.finest_density(), 0};
+            for (uint32_t child = 0; child < node.child_count; ++child)
+                levels[row].triangle_count += levels[node.first_child + child].triangle_count;
+            if (node.child_count > 0) continue;
+            const SceneTile& source = scene.tiles[node.tile];
+            auto [chunk, positions, turns, models] =
+                settings_.world->create_chunk<PlantPosition, PlantTurn, PlantModel>(
+                    source.plant_count, settings_.world->chunk(tile_chunk).entity(uint32_t(row)));
+            if (!chunk) return refused();
+            chunks_.push_back(chunk);
+            for (uint32_t i = 0; i < source.plant_count; ++i) {
+                size_t plant = source.first_plant + i;
+                positions[i] = scene.positions[plant];
+                turns[i] = scene.turns[plant];
+                models[i] = scene.plant_models[plant];
+                levels[row].triangle_count += geometry_.models[models[i].model].triangle_count;
+            }
+        }
+        scene_triangles_ = levels[0].triangle_count;
+        return {};
+    }
+
     void drop_scene() {
-        for (const Entity& tile : tiles_) settings_.world->destroy(tile);
         for (const ChunkId& chunk : chunks_) settings_.world->destroy_chunk(chunk);
-        tiles_.clear();
         chunks_.clear();
         geometry_ = {};
         terrain_ = nullptr;
@@ -153,12 +167,13 @@ class VegetationSystems final : public Vegetation {
         drawn_.sample_distance_px = resting_.sample_distance_px;
     }
 
-    void list_tiles(const TileList::Plants& plants) {
+    void list_tiles(const TileList::Tiles& tiles, const TileList::Plants& plants) {
         double begin = now_ms();
         begin_frame();
         if (settled_) return;
         frustum_ = make_frustum(camera_, rasteriser_->width(), rasteriser_->height());
-        tile_list_.list(plants, frustum_, camera_.position_world);
+        tile_list_.list(tiles, plants, frustum_, camera_.position_world,
+                        drawn_.level_of_detail ? drawn_.sample_distance_px : 0.0f);
         report_.cull_ms = now_ms() - begin;
     }
 
@@ -166,14 +181,16 @@ class VegetationSystems final : public Vegetation {
         if (settled_) return;
         double begin = now_ms();
         size_t run_count = tile_list_.runs().size();
-        work_.begin(run_count +
-                    1);  // the first one is the terrain's: should memory run out, the ground stays
+        // The first part is the terrain's: should memory run out, the ground stays. The last one is the clouds'.
+        work_.begin(run_count + 2);
         run_counts_.assign(run_count, {});
         parallel_for(run_count, 1, [this](size_t first, size_t last) {
             for (size_t i = first; i < last; ++i)
                 run_counts_[i] = expand_plants(tile_list_.runs()[i], geometry_, frustum_, drawn_,
                                                resting_.index, work_.part(i + 1));
         });
+        expand_clouds(tile_list_.clouds(), geometry_, frustum_, drawn_, resting_.index,
+                      work_.part(run_count + 1));
         report_.terrain_triangles =
             terrain_ ? expand_terrain(*terrain_, geometry_.first_terrain_vertex, camera_.position_world,
                                       frustum_, drawn_, work_.part(0))
@@ -207,16 +224,25 @@ class VegetationSystems final : public Vegetation {
     void count() {
         if (settled_) return;
         report_.tiles = tile_list_.tile_count;
-        report_.tiles_visible = tile_list_.visible_tile_count;
+        report_.tiles_touched = tile_list_.touched_tile_count;
+        report_.tiles_expanded = tile_list_.expanded_tile_count;
+        report_.clouds = uint32_t(tile_list_.clouds().size());
         report_.plants = tile_list_.plant_count;
         report_.plants_visible = 0;
-        report_.triangles = report_.lines = report_.points = report_.full_triangles = 0;
-        for (size_t i = 0; i < run_counts_.size(); ++i) {
-            report_.plants_visible += run_counts_[i].plants_visible;
-            report_.full_triangles += run_counts_[i].full_triangles;
-            report_.triangles += work_.part(i + 1).triangles;
-            report_.lines += work_.part(i + 1).lines;
-            report_.points += work_.part(i + 1).points;
+        report_.cloud_plants = report_.full_triangles = 0;
+        for (const CloudTile& tile : tile_list_.clouds()) {
+            report_.cloud_plants += tile.plant_count;
+            report_.full_triangles += tile.triangle_count;
+        }
+        for (const ExpandCounts& run : run_counts_) {
+            report_.plants_visible += run.plants_visible;
+            report_.full_triangles += run.full_triangles;
+        }
+        report_.triangles = report_.lines = report_.points = 0;
+        for (size_t i = 1; i < run_counts_.size() + 2; ++i) {
+            report_.triangles += work_.part(i).triangles;
+            report_.lines += work_.part(i).lines;
+            report_.points += work_.part(i).points;
         }
         report_.vertices = report_.points + 2 * report_.lines + 3 * report_.triangles;
         report_.scene_triangles = scene_triangles_;
@@ -230,8 +256,7 @@ class VegetationSystems final : public Vegetation {
     std::unique_ptr<Rasteriser> rasteriser_;
     SceneGeometry geometry_;
     std::shared_ptr<const Terrain> terrain_;
-    std::vector<Entity> tiles_;
-    std::vector<ChunkId> chunks_;
+    std::vector<ChunkId> chunks_;  // of the tiles, and of each leaf's plants
     uint64_t scene_triangles_ = 0;
 
     Camera camera_;

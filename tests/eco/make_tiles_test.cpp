@@ -104,10 +104,8 @@ TEST(MakeTiles, FinishedBoundsHoldEveryPlant) {
                 vec3 local = vec3(p.x_tile, p.y_tile, p.z_tile) + away;
                 ASSERT_TRUE(glm::all(glm::lessThanEqual(tile.tile.bounds_tile.min, local)) &&
                             glm::all(glm::lessThanEqual(local, tile.tile.bounds_tile.max)));
-                ASSERT_LE(glm::length(away), tile.tile.largest_plant_radius_m);
             }
         }
-    EXPECT_LT(scene.tiles[0].tile.largest_plant_radius_m, 2.05f * std::sqrt(9.0f + 81.0f + 4.0f));
 }
 
 TEST(MakeTiles, ManyPlantsOnOneSpotShareItOverTiles) {

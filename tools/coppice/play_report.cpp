@@ -88,8 +88,7 @@ std::vector<Figure> play_figures(const PlayRecord& record) {
         figures.push_back({"full_over_lod", lod > 0.0 ? full / lod : 0.0, "times", {}});
         // Of the worst frame: one that shows nothing but sky agrees perfectly and says nothing.
         std::vector<double> psnr_db = over_compared(record, [](auto& f) { return f.psnr_db; });
-        figures.push_back(
-            {"psnr_to_full_db", *std::min_element(psnr_db.begin(), psnr_db.end()), "dB", {}});
+        figures.push_back({"psnr_to_full_db", *std::min_element(psnr_db.begin(), psnr_db.end()), "dB", {}});
     }
     if (record.validation)
         figures.push_back(
@@ -101,17 +100,18 @@ std::string frames_csv(const PlayRecord& record) {
     std::string csv = "frame,time_s,wall_ms,schedule_ms,cull_ms,lod_ms,write_ms";
     for (const std::string& pass : record.passes) csv += ",gpu_" + pass + "_ms";
     csv +=
-        ",vertices,triangles,lines,points,terrain_triangles,full_triangles,tiles_visible,plants_visible,"
+        ",vertices,triangles,lines,points,terrain_triangles,full_triangles,tiles_touched,clouds,plants_"
+        "visible,"
         "work_entries,dropped_entries\n";
     for (const FrameRecord& frame : record.frames) {
         const FrameReport& report = frame.report;
         csv += fmt::format("{},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f}", frame.frame, frame.time_s,
                            frame.wall_ms, frame.schedule_ms, report.cull_ms, report.lod_ms, report.write_ms);
         for (double ms : frame.pass_ms) csv += fmt::format(",{:.4f}", ms);
-        csv +=
-            fmt::format(",{},{},{},{},{},{},{},{},{},{}\n", report.vertices, report.triangles, report.lines,
-                        report.points, report.terrain_triangles, report.full_triangles, report.tiles_visible,
-                        report.plants_visible, report.work_entries, report.dropped_entries);
+        csv += fmt::format(",{},{},{},{},{},{},{},{},{},{},{}\n", report.vertices, report.triangles,
+                           report.lines, report.points, report.terrain_triangles, report.full_triangles,
+                           report.tiles_touched, report.clouds, report.plants_visible, report.work_entries,
+                           report.dropped_entries);
     }
     return csv;
 }

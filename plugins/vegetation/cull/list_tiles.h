@@ -1,4 +1,5 @@
-// The tiles in view, nearest first, cut into runs of plants for the jobs that follow.
+// The tiles in view, nearest first: down the hierarchy as far as a tile's cloud does not suffice, then runs of plants
+// for the jobs that follow.
 #pragma once
 #include <span>
 #include <vector>
@@ -16,26 +17,55 @@ struct PlantRun {
     std::span<const PlantModel> models;
 };
 
+// A tile that its cloud stands for.
+struct CloudTile {
+    uint32_t cloud;      // TileLevels::cloud
+    vec3 origin_camera;  // m
+    Box bounds_camera;
+    float nearest_m;  // from the viewer to the bounds
+    uint32_t plant_count;
+    uint64_t triangle_count;
+};
+
 inline constexpr uint32_t k_plants_a_run = 256;
 
 class TileList {
   public:
+    using Tiles = Query<const Tile, const TileLevels>;
     using Plants = Query<const PlantPosition, const PlantTurn, const PlantModel, Owner<const Tile>>;
 
-    // Order: by distance of the tile's bounds, then by the tile's first plant. Requires a finite camera.
-    void list(const Plants& plants, const Frustum& frustum, dvec3 camera_world);
+    // Order: by distance of the tile's bounds, then by row. Requires a finite camera. sample_distance_px: d'; 0: no
+    // clouds, plants everywhere.
+    void list(const Tiles& tiles, const Plants& plants, const Frustum& frustum, dvec3 camera_world,
+              float sample_distance_px);
 
     std::span<const PlantRun> runs() const { return runs_; }
-    uint32_t tile_count = 0, visible_tile_count = 0, plant_count = 0;
+    std::span<const CloudTile> clouds() const { return clouds_; }
+    // Leaves of the hierarchy; of those in view, the ones whose plants are looked at.
+    uint32_t tile_count = 0, expanded_tile_count = 0, plant_count = 0;
+    uint32_t touched_tile_count = 0;  // looked at on the way down
 
   private:
-    struct VisibleTile {
-        float distance_m;
-        uint32_t first_index;  // of the tile's first entity
-        PlantRun plants;
+    struct TilePlants {
+        std::span<const PlantPosition> positions;
+        std::span<const PlantTurn> turns;
+        std::span<const PlantModel> models;
     };
-    std::vector<VisibleTile> tiles_;
+    struct ExpandedTile {
+        float nearest_m;
+        uint32_t row;
+        bool inside;
+        vec3 origin_camera;
+    };
+    struct Pending {
+        uint32_t row;
+        bool inside;
+    };
+    std::vector<TilePlants> plants_of_row_;
+    std::vector<Pending> pending_;
+    std::vector<ExpandedTile> expanded_;
     std::vector<PlantRun> runs_;
+    std::vector<CloudTile> clouds_;
 };
 
 }  // namespace coppice

@@ -1,7 +1,7 @@
 #include "plugins/vegetation/draw/expand_plants.h"
 
 #include <algorithm>
-#include "runtime/core/hash.h"
+#include "plugins/vegetation/eco/part_chance.h"
 
 namespace coppice {
 namespace {
@@ -30,13 +30,15 @@ PlantView view_of(const Frustum& frustum, const mat3& rotation, vec3 center, flo
                 off_axis_stretch(frustum, center, distance_m)};
 }
 
+// Multiples of the golden section.
+float turn_of(uint32_t rest_index) { return float(uint32_t(rest_index * 2654435769u) >> 8) * 0x1p-24f; }
+
 }  // namespace
 
 ExpandCounts expand_plants(const PlantRun& run, const SceneGeometry& geometry, const Frustum& frustum,
                            const FrameSettings& settings, uint32_t rest_index, WorkPart& work) {
     ExpandCounts counts;
-    const float turn =
-        float(uint32_t(rest_index * 2654435769u) >> 8) * 0x1p-24f;  // multiples of the golden section
+    const float turn = turn_of(rest_index);
     for (size_t i = 0; i < run.positions.size(); ++i) {
         const PlantPosition& place = run.positions[i];
         const DrawModel& model = geometry.models[run.models[i].model];
@@ -52,10 +54,7 @@ ExpandCounts expand_plants(const PlantRun& run, const SceneGeometry& geometry, c
         const float own_place = share_of_own_place(model, glm::length(center), place.scale);
         uint32_t instance = UINT32_MAX;
         auto choose = [&](uint32_t part, const PlantView& view) {
-            float chance =
-                float(mix_bits(run.models[i].seed + (part - model.first_part) * 0x9e3779b9u) >> 8) *
-                    0x1p-24f +
-                turn;
+            float chance = part_chance(run.models[i], part - model.first_part) + turn;
             if (chance >= 1.0f) chance -= 1.0f;
             return choose_part(geometry.parts[part], view, settings, chance);
         };
@@ -90,6 +89,29 @@ ExpandCounts expand_plants(const PlantRun& run, const SceneGeometry& geometry, c
         }
     }
     return counts;
+}
+
+void expand_clouds(std::span<const CloudTile> tiles, const SceneGeometry& geometry, const Frustum& frustum,
+                   const FrameSettings& settings, uint32_t rest_index, WorkPart& work) {
+    const float turn = turn_of(rest_index);
+    for (const CloudTile& tile : tiles) {
+        const DrawCloud& cloud = geometry.clouds[tile.cloud];
+        const vec3 center = tile.bounds_camera.center();
+        const float distance_m = glm::length(center);
+        const float stretch = off_axis_stretch(frustum, center, distance_m);
+        PlantView view;
+        view.pixels_per_meter = frustum.focal_px / std::max(distance_m, frustum.near_m) * stretch;
+        view.direction_plant = distance_m > 0.0f ? center * (1.0f / distance_m) : vec3(0.0f, 0.0f, -1.0f);
+        const float nearest_pixels_per_meter =
+            frustum.focal_px / std::max(tile.nearest_m, frustum.near_m) * stretch;
+        // A tile around the image plane has no depth to go by: all of it is drawn as its nearest place asks for.
+        const float depth_m = std::max(glm::dot(frustum.forward, center), 0.0f);
+        const PartChoice choice = choose_cloud(cloud.part, cloud.densities, cloud.mean_area_m2, view, depth_m,
+                                               nearest_pixels_per_meter, settings);
+        if (choice.points == 0) continue;
+        work.add(cloud.geometry, choice, work.add_instance(instance_of(mat3(1.0f), 1.0f, tile.origin_camera)),
+                 turn);
+    }
 }
 
 uint64_t expand_terrain(const Terrain& terrain, uint32_t first_vertex, dvec3 camera_world,

@@ -34,9 +34,10 @@ struct Entry {
     uint first_vertex, count, instance, first_owner;
     float size_px;   // splat side or line width
     uint owner_min;
-    bool cull_back;
+    bool cull_back;   // of triangles
     bool ground;
-    float mean_facing;  // of points: |cos| of normal and view in the mean; 0: all are of one size
+    float mean_facing;    // of points: |cos| of normal and view in the mean; 0: all are of one size
+    float density_limit;  // of a cloud's points: density times w^2 of what is drawn; 0: no cloud
 };
 
 // The entry of this lane, false where there is none; its primitives are i = first; i < count; i += step.
@@ -58,7 +59,7 @@ bool take_entry(out uint index, out uint first, out uint step) {
 Entry load_entry(uint index) {
     uvec4 a = texelFetch(entries, int(index * 2u));
     uvec4 b = texelFetch(entries, int(index * 2u + 1u));
-    return Entry(a.x, a.y, a.z & ~k_ground_bit, a.w, uintBitsToFloat(b.x), b.y, b.z != 0u, (a.z & k_ground_bit) != 0u, uintBitsToFloat(b.w));
+    return Entry(a.x, a.y, a.z & ~k_ground_bit, a.w, uintBitsToFloat(b.x), b.y, b.z != 0u, (a.z & k_ground_bit) != 0u, uintBitsToFloat(b.w), uintBitsToFloat(b.z));
 }
 
 // Plant space -> (column * w, row * w, w), and the rotation for normals.

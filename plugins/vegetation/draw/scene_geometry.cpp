@@ -1,13 +1,21 @@
 #include "plugins/vegetation/draw/scene_geometry.h"
 
+#include <bit>
+#include "plugins/vegetation/plant/direction_form.h"
+
 namespace coppice {
 
-Result<SceneGeometry> gather_geometry(const Scene& scene, std::span<const Plant> plants) {
+Result<SceneGeometry> gather_geometry(const Scene& scene, std::span<const Plant> plants,
+                                      std::span<const TileNode> tiles) {
     SceneGeometry geometry;
     uint64_t vertex_count = scene.terrain ? scene.terrain->vertices().size() : 0, owner_count = 0;
     for (const Plant& plant : plants) {
         vertex_count += plant.triangle_vertices.size() + plant.points.size() + plant.line_vertices.size();
         owner_count += plant.point_owners.size();
+    }
+    for (const TileNode& tile : tiles) {
+        vertex_count += tile.cloud.points.size();
+        owner_count += tile.cloud.points.size();
     }
     if (vertex_count > UINT32_MAX)
         return fail(ErrorId::limit_exceeded, scene.path, "plants", std::to_string(vertex_count) + " vertices",
@@ -56,6 +64,16 @@ Result<SceneGeometry> gather_geometry(const Scene& scene, std::span<const Plant>
         }
         model.has_cells = !plant.cells.empty();
         geometry.models.push_back(model);
+    }
+    for (const TileNode& tile : tiles) {
+        PartGeometry place{};
+        place.first_point = append(tile.cloud.points);
+        place.point_count = uint32_t(tile.cloud.points.size());
+        place.first_owner = uint32_t(geometry.owners.size());
+        for (float density : tile.cloud.densities)
+            geometry.owners.push_back(std::bit_cast<uint32_t>(density));
+        const float mean_area_m2 = float(mean_over_directions(tile.cloud.part.projected_area_m2));
+        geometry.clouds.push_back({tile.cloud.part, mean_area_m2, tile.cloud.densities, place});
     }
     if (scene.terrain) geometry.first_terrain_vertex = append(scene.terrain->vertices());
     return geometry;

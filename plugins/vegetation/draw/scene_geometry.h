@@ -4,6 +4,7 @@
 #include <vector>
 #include "plugins/vegetation/draw/rasteriser.h"
 #include "plugins/vegetation/eco/scene.h"
+#include "plugins/vegetation/eco/tile_tree.h"
 #include "plugins/vegetation/plant/plant.h"
 
 namespace coppice {
@@ -27,8 +28,17 @@ struct PartSphere {
     float radius_m;
 };
 
+// A tile's cloud: points in tile space.
+struct DrawCloud {
+    PackedPart part;
+    float mean_area_m2;            // projected, over all directions
+    std::vector<float> densities;  // of its points, ascending
+    PartGeometry geometry;
+};
+
 struct SceneGeometry {
     std::vector<DrawModel> models;
+    std::vector<DrawCloud> clouds;  // of the tree's nodes, in order
     // Of each model its parts, then their cells; importance times the scene's.
     std::vector<PackedPart> parts;
     std::vector<PartGeometry> part_geometry;
@@ -41,6 +51,7 @@ struct SceneGeometry {
 };
 
 // plants[i] belongs to scene.models[i]. Errors: limit_exceeded beyond 2^32 vertices.
-Result<SceneGeometry> gather_geometry(const Scene& scene, std::span<const Plant> plants);
+Result<SceneGeometry> gather_geometry(const Scene& scene, std::span<const Plant> plants,
+                                      std::span<const TileNode> tiles = {});
 
 }  // namespace coppice

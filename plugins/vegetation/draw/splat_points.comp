@@ -7,7 +7,8 @@
 #include "plugins/vegetation/draw/raster.glsl"
 
 layout(constant_id = 2) const uint k_side_limit = 1u;  // pixels a square can touch along one axis: 1, 2, or 0: any
-layout(constant_id = 3) const bool k_blend = false;    // leaves out points whose triangle is drawn
+// Leaves out points whose triangle is drawn; of a cloud those that their place does not ask for.
+layout(constant_id = 3) const bool k_blend = false;
 layout(binding = 4) uniform utextureBuffer owners;
 
 void main() {
@@ -19,7 +20,8 @@ void main() {
     int side = k_side_limit > 0u ? int(k_side_limit) : min(int(ceil(entry.size_px)), 64);
 
     for (uint i = first_item; i < entry.count; i += step) {
-        if (k_blend && texelFetch(owners, int(entry.first_owner + i)).x < entry.owner_min) continue;
+        uint owner = k_blend ? texelFetch(owners, int(entry.first_owner + i)).x : 0u;
+        if (k_blend && owner < entry.owner_min) continue;
         uvec4 vertex = texelFetch(vertices, int(entry.first_vertex + i));
         vec3 position = uintBitsToFloat(vertex.xyz);
         vec3 p = project(t, position);
@@ -30,6 +32,7 @@ void main() {
         vec2 low = p.xy - 0.5 * side_px - 0.5;
         vec2 first = ceil(low);
         ivec2 count = ivec2(ceil(low + side_px) - first);
+        if (k_blend && entry.density_limit > 0.0 && uintBitsToFloat(owner) * p.z * p.z > entry.density_limit) continue;
         bool in_view = p.z >= frame.row_w.w && all(greaterThan(p.xy, vec2(-64.0))) &&
                        all(lessThan(p.xy, vec2(size) + 64.0));
         if (!in_view) continue;

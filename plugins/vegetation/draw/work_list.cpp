@@ -72,13 +72,19 @@ void WorkPart::add(const PartGeometry& geometry, const PartChoice& choice, uint3
     // A side a rounding error over a whole pixel must not cost four times the pixels.
     constexpr float k_slack = 1.0e-3f;
     float side = choice.splat_px;
-    WorkKind kind = choice.point_owner_min > 0 ? WorkKind::points_blend
-                    : side <= 1.0f + k_slack   ? WorkKind::points_1
-                    : side <= 2.0f + k_slack   ? WorkKind::points_2
-                                               : WorkKind::points_any;
+    WorkKind kind = choice.point_owner_min > 0 || choice.density_limit_m2 > 0.0f ? WorkKind::points_blend
+                    : side <= 1.0f + k_slack                                     ? WorkKind::points_1
+                    : side <= 2.0f + k_slack                                     ? WorkKind::points_2
+                                                                                 : WorkKind::points_any;
     auto [first_point, points_from_start] = cut(choice.points, geometry.point_count);
-    WorkEntry point{geometry.first_point,   0, instance,          geometry.first_owner, side,
-                    choice.point_owner_min, 0, choice.mean_facing};
+    WorkEntry point{geometry.first_point,
+                    0,
+                    instance,
+                    geometry.first_owner,
+                    side,
+                    choice.point_owner_min,
+                    std::bit_cast<uint32_t>(choice.density_limit_m2),
+                    choice.mean_facing};
     point.count = choice.points - points_from_start;
     add_run(kind, point, 1);
     point.first_vertex += first_point;

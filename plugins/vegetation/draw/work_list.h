@@ -11,7 +11,7 @@
 namespace coppice {
 
 // One dispatch each. Points by the pixels a splat can touch along one axis; blend: of any size, leaving out points
-// whose triangle is drawn.
+// whose triangle is drawn, and of clouds those beyond the density their place asks for.
 enum class WorkKind : uint8_t { triangles, lines, points_1, points_2, points_any, points_blend };
 inline constexpr size_t k_work_kinds = 6;
 
@@ -20,11 +20,12 @@ struct WorkEntry {
     uint32_t first_vertex;  // in the geometry buffer
     uint32_t count;         // primitives
     uint32_t instance;      // its highest bit: k_ground_bit
-    uint32_t first_owner;   // points_blend only
+    uint32_t first_owner;   // points_blend only; of clouds the points' densities
     float size_px;          // splat side or line width
     uint32_t owner_min;     // points_blend; of lines the bits of PartChoice::turned_share
-    uint32_t cull_back;     // triangles only: 1: those that turn their back are left out
-    float mean_facing;      // PartChoice's
+    uint32_t
+        cull_back;  // triangles: 1: those that turn their back are left out; points: bits of density_limit_m2
+    float mean_facing;  // PartChoice's
 };
 static_assert(sizeof(WorkEntry) == 32);
 

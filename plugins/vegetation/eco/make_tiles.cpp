@@ -135,7 +135,7 @@ void make_tiles(std::span<const Placement> placements, Scene& scene) {
                 return model_a != model_b ? model_a < model_b : a < b;
             });
             SceneTile& tile = scene.tiles[t];
-            tile = {{origin, {}, 0.0f}, uint32_t(square.first), uint32_t(square.last - square.first)};
+            tile = {{origin, {}}, uint32_t(square.first), uint32_t(square.last - square.first)};
             for (size_t row = square.first; row < square.last; ++row) {
                 const Placement& plant = placements[keys[row].index];
                 vec3 local(plant.position_world - origin);
@@ -154,7 +154,6 @@ void finish_tiles(Scene& scene, std::span<const Box> model_bounds_plant) {
         for (size_t t = first; t < last; ++t) {
             SceneTile& tile = scene.tiles[t];
             tile.tile.bounds_tile = {};
-            tile.tile.largest_plant_radius_m = 0.0f;
             for (uint32_t row = tile.first_plant; row < tile.first_plant + tile.plant_count; ++row) {
                 const PlantPosition& p = scene.positions[row];
                 Box bounds = model_bounds_plant[scene.plant_models[row].model];
@@ -168,9 +167,6 @@ void finish_tiles(Scene& scene, std::span<const Box> model_bounds_plant) {
                         1.001f +
                     1e-4f * glm::length(center);
                 tile.tile.bounds_tile.include(Box{middle - reach, middle + reach});
-                vec3 farthest = glm::max(glm::abs(bounds.min), glm::abs(bounds.max)) * p.scale;
-                tile.tile.largest_plant_radius_m =
-                    std::max(tile.tile.largest_plant_radius_m, glm::length(farthest) * 1.001f);
             }
         }
     });

@@ -19,7 +19,7 @@ inline constexpr double k_tile_least_side_m =
 void make_tiles(std::span<const Placement> placements, Scene& scene);
 
 // To be called once the plants are cooked, and before the scene is drawn: model_bounds_plant[i] is
-// Plant::bounds_plant of scene.models[i]. Sets every tile's bounds_tile and largest_plant_radius_m. Requires
+// Plant::bounds_plant of scene.models[i]. Sets every tile's bounds_tile. Requires
 // one box a model.
 void finish_tiles(Scene& scene, std::span<const Box> model_bounds_plant);
 

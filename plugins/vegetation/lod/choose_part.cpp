@@ -10,8 +10,19 @@ uint32_t round_by_chance(float count, float chance, uint32_t limit) {
     return rounded >= float(limit) ? limit : uint32_t(std::max(rounded, 0.0f));
 }
 
-// A part seen this much on edge shows nothing to weigh.
-constexpr float k_least_facing = 0.02f;
+// |n . v| in the mean over the part's surface; of a closed one the half that turns away has the same.
+float mean_facing(const PackedPart& part, float area_px2, const PlantView& view) {
+    const float sides = part.flags & k_part_closed ? 2.0f : 1.0f;
+    const float surface_px2 = part.area_m2 * view.pixels_per_meter * view.pixels_per_meter;
+    return surface_px2 > 0.0f ? std::min(sides * area_px2 / surface_px2, 1.0f) : 0.0f;
+}
+
+void weigh_by_facing(PartChoice& choice, float facing, const FrameSettings& settings) {
+    constexpr float k_least_facing = 0.02f;  // seen this much on edge, nothing is left to weigh
+    if (!settings.weigh_by_facing || facing <= k_least_facing) return;
+    choice.mean_facing = facing;
+    choice.splat_px /= std::sqrt(facing);
+}
 
 PartChoice all_triangles(const PackedPart& part) {
     PartChoice choice;
@@ -65,6 +76,28 @@ PartChoice choose_lines(const PackedPart& part, float projected_area_px2, float 
     return choice;
 }
 
+PartChoice choose_cloud(const PackedPart& cloud, std::span<const float> densities, float mean_area_m2,
+                        const PlantView& view, float depth_m, float nearest_pixels_per_meter,
+                        const FrameSettings& settings) {
+    PartChoice choice;
+    const float area_px2 = projected_area_px2(cloud, view, settings.projection);
+    const float mean_px2 = mean_area_m2 * view.pixels_per_meter * view.pixels_per_meter;
+    if (!(area_px2 > 0.0f) || !(mean_px2 > 0.0f)) return choice;
+    const float d = std::max(settings.sample_distance_px, 1.0e-3f);
+    const float per_meter = view.pixels_per_meter / d, nearest_per_meter = nearest_pixels_per_meter / d;
+    const float from_here = settings.splat_factor * area_px2 / mean_px2;  // from this side, over the mean
+    auto count_up_to = [densities](float density) {
+        return uint32_t(std::upper_bound(densities.begin(), densities.end(), density) - densities.begin());
+    };
+    choice.points = count_up_to(nearest_per_meter * nearest_per_meter * from_here);
+    choice.skipped_points =
+        choice.points - std::min(choice.points, count_up_to(per_meter * per_meter * from_here));
+    choice.density_limit_m2 = per_meter * per_meter * from_here * depth_m * depth_m;
+    choice.splat_px = d;  // the squares of p = c_p A' / d'^2 points add up to c_p A'
+    weigh_by_facing(choice, mean_facing(cloud, area_px2, view), settings);
+    return choice;
+}
+
 PartChoice choose_part(const PackedPart& part, const PlantView& view, const FrameSettings& settings,
                        float chance) {
     if (!settings.level_of_detail) return all_triangles(part);
@@ -74,17 +107,11 @@ PartChoice choose_part(const PackedPart& part, const PlantView& view, const Fram
     bool measured = settings.projection == ProjectionMode::measured;
     float d = std::max(settings.sample_distance_px, 1.0e-3f);
     if (part.kind == PackedPartKind::points) {
-        // |n . v| in the mean over the part's surface; of a closed one the half that turns away has the same.
-        const float sides = part.flags & k_part_closed ? 2.0f : 1.0f;
-        const float surface_px2 = part.area_m2 * view.pixels_per_meter * view.pixels_per_meter;
-        const float facing = surface_px2 > 0.0f ? std::min(sides * area_px2 / surface_px2, 1.0f) : 0.0f;
+        const float facing = mean_facing(part, area_px2, view);
         if (measured && part.point_count > 0)
             area_px2 *= gain_at(part, area_px2 / (float(part.point_count) * d * d));
         PartChoice choice = choose_points(part, area_px2, settings, chance);
-        if (settings.weigh_by_facing && facing > k_least_facing) {
-            choice.mean_facing = facing;
-            choice.splat_px /= std::sqrt(facing);
-        }
+        weigh_by_facing(choice, facing, settings);
         return choice;
     }
     float length_px = projected_length_px(part, view, settings.projection);

@@ -2,6 +2,7 @@
 // triangles (Deussen et al. 2002, sections 5.1 to 5.3; DESIGN section 3: point_count, line_count, blend).
 #pragma once
 #include <cstdint>
+#include <span>
 #include "plugins/vegetation/lod/project.h"
 
 namespace coppice {
@@ -21,6 +22,9 @@ struct PartChoice {
     // Splats are sized by |n . v|, whose mean this is; splat_px is of a point that faces the viewer. 0: all are of one
     // size.
     float mean_facing = 0.0f;
+    // Of a cloud: drawn are those of `points` whose density T, times the square of their distance along the view in m,
+    // is at most this; 0: all.
+    float density_limit_m2 = 0.0f;
 };
 
 // p = c_p A'_p / d'^2, times importance (ERRATA 1). Not rounded; finite and >= 0 for finite input.
@@ -36,6 +40,14 @@ PartChoice choose_points(const PackedPart& part, float projected_area_px2, const
 // eps_l on the screen >= d', or q = A'_l / (l' d') > 1: all triangles. Else the first q n_l lines.
 PartChoice choose_lines(const PackedPart& part, float projected_area_px2, float projected_length_px,
                         float pixels_per_meter, const FrameSettings& settings, float chance);
+
+// Points that stand for a whole tile: at each place those whose density is at most what it asks for at its own distance,
+// which are those the plants would draw there. densities: of the cloud's points, ascending; mean_area_m2: its projected
+// area in the mean over directions, which densities are meant for; view: of the tile's centre, depth_m along the view;
+// nearest_pixels_per_meter >= the view's.
+PartChoice choose_cloud(const PackedPart& cloud, std::span<const float> densities, float mean_area_m2,
+                        const PlantView& view, float depth_m, float nearest_pixels_per_meter,
+                        const FrameSettings& settings);
 
 // The whole decision for one part.
 PartChoice choose_part(const PackedPart& part, const PlantView& view, const FrameSettings& settings,

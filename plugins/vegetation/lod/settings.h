@@ -21,8 +21,7 @@ struct FrameSettings {
     float sample_distance_px = 1.0f;  // d'; > 0. Smaller: more primitives
     float splat_factor = 1.0f;        // c_p; the paper says 1.2 to 1.5 (docs/decisions.md)
     ProjectionMode projection = ProjectionMode::measured;
-    bool weigh_by_facing =
-        true;  // splats by |n . v|, as leaves are seen; false: all alike, as printed
+    bool weigh_by_facing = true;  // splats by |n . v|, as leaves are seen; false: all alike, as printed
     bool level_of_detail = true;  // false: every triangle of everything in view
     bool blend = true;            // false: switch from points to triangles at once
     RepresentationView view = RepresentationView::lit;

@@ -5,8 +5,12 @@
 namespace coppice {
 
 struct FrameReport {
-    uint32_t tiles = 0, tiles_visible = 0;
+    uint32_t tiles = 0;           // leaves of their hierarchy
+    uint32_t tiles_touched = 0;   // looked at on the way down
+    uint32_t tiles_expanded = 0;  // whose plants were looked at
+    uint32_t clouds = 0;          // tiles that one cloud of points stood for
     uint32_t plants = 0, plants_visible = 0;
+    uint64_t cloud_plants = 0;                      // that clouds stood for
     uint64_t triangles = 0, lines = 0, points = 0;  // drawn, of plants
     uint64_t terrain_triangles = 0;
     uint64_t vertices = 0;         // points + 2 lines + 3 triangles, of plants

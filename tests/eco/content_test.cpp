@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <set>
+#include "plugins/modeller/grow.h"
 #include "plugins/vegetation/eco/camera_path.h"
 #include "plugins/vegetation/eco/load_scene.h"
 #include "tests/eco/scratch.h"
@@ -11,7 +12,8 @@ namespace {
 
 Scene load_content(const std::string& name) {
     static constexpr TerrainInterface k_terrain{sizeof(TerrainInterface), load_terrain};
-    auto scene = load_scene(COPPICE_CONTENT_DIR "/scenes/" + name + ".eco.json", {&k_terrain});
+    static constexpr ModellerInterface k_modeller{sizeof(ModellerInterface), modeller::grow_plant};
+    auto scene = load_scene(COPPICE_CONTENT_DIR "/scenes/" + name + ".eco.json", {&k_terrain, &k_modeller});
     EXPECT_TRUE(scene) << (scene ? "" : to_string(scene.error()));
     return scene ? std::move(*scene) : Scene{};
 }
@@ -36,6 +38,8 @@ TEST(Content, SunflowersAre13000AndATree) {
     };
     EXPECT_EQ(count("sunflower"), 13000);
     EXPECT_EQ(count("lime"), 1);
+    // A hundred individuals as four models: a field of many sizes from few shapes.
+    EXPECT_EQ(std::ranges::count(scene.models, "sunflower", &SceneModel::name), 4);
 }
 
 TEST(Content, LandscapeIsMixedFromScenesThatShareTheirModels) {

@@ -1,5 +1,5 @@
-// Cells of a large plant that choose their levels for themselves cover together what the plant covers, from nearby where
-// each chooses otherwise, and leaving out what lies outside the view changes no pixel.
+// Cells of a large plant that choose their levels for themselves cover together what the plant covers, from
+// nearby where each chooses otherwise, and leaving out what lies outside the view changes no pixel.
 #include <gtest/gtest.h>
 #include "plugins/modeller/grow.h"
 #include "plugins/vegetation/cook/cook_plant.h"
@@ -41,7 +41,8 @@ class OctreeAgreement : public ::testing::Test {
         }
     }
 
-    // From that many radii before the plant's middle, around it by index; beside: looking past it by that angle.
+    // From that many radii before the plant's middle, around it by index; beside: looking past it by that
+    // angle.
     PictureMean draw(float radii, int index, bool inside, const FrameSettings& settings,
                      float beside_rad = 0.0f) {
         Camera camera;

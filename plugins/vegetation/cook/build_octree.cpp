@@ -22,7 +22,8 @@ struct Cell {
     bool whole;  // is not cut further
 };
 
-// The occupied octants, those with few triangles joined to the next; empty where they are not worth being cells.
+// The occupied octants, those with few triangles joined to the next; empty where they are not worth being
+// cells.
 std::vector<Cell> cut(const Cell& cell, const OctreeUnits& units) {
     if (cell.depth == k_octree_depth_limit || cell.side_m < 2.0f * k_cell_least_side_m) return {};
     auto octant_of = [&](uint32_t unit) {

@@ -244,8 +244,8 @@ void append(std::vector<T>& to, const std::vector<T>& items) {
     to.insert(to.end(), items.begin(), items.end());
 }
 
-// The part of `packed` behind the plant's, its cells behind those kept for later in `cells`: their points and lines
-// follow all parts'.
+// The part of `packed` behind the plant's, its cells behind those kept for later in `cells`: their points and
+// lines follow all parts'.
 void add_part(const PlantBlocks& packed, const PlantBlocks& its_cells, PlantBlocks& plant,
               PlantBlocks& cells) {
     PackedPart part = packed.parts[0];

@@ -67,8 +67,8 @@ const char* fault_of_part(const PackedPart& part, const Plant& plant, PartBegin&
     return nullptr;
 }
 
-// Null where the cells share out the triangles of the parts that they name, else what is wrong with cell `at`, behind
-// which `begin` stands then.
+// Null where the cells share out the triangles of the parts that they name, else what is wrong with cell
+// `at`, behind which `begin` stands then.
 const char* fault_of_cells(const Plant& plant, PartBegin& begin, size_t& at) {
     for (at = 0; at < plant.cells.size(); ++at) {
         const PackedPart& cell = plant.cells[at];

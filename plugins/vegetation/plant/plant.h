@@ -1,7 +1,7 @@
 // A packed plant in memory: a view into one mapped .plant file (or into a buffer of the same bytes), used in
-// place. Format, little-endian: header, parts, then one block each of triangle vertices, points, point owners,
-// line vertices and cells; every block is checksummed (XXH3-64) and starts at a multiple of 64 bytes. pack.cpp
-// writes, load.cpp reads.
+// place. Format, little-endian: header, parts, then one block each of triangle vertices, points, point
+// owners, line vertices and cells; every block is checksummed (XXH3-64) and starts at a multiple of 64 bytes.
+// pack.cpp writes, load.cpp reads.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -82,10 +82,10 @@ struct Plant {
     std::span<const PackedVertex>
         line_vertices;               // two a line; the second one's surface is not a surface but the
                                      // line's own width over the part's mean, as float bits, in (0, 100]
-    // Octree cells of large parts, part after part: what a viewer near the plant draws in place of the part. They share
-    // its triangles out; their points and lines are their own, behind all parts' in the spans above. Such a part itself
-    // stores the points that far views need, cut off where cells take over, and its triangles are not in progressive
-    // order: only all of them can be drawn.
+    // Octree cells of large parts, part after part: what a viewer near the plant draws in place of the part.
+    // They share its triangles out; their points and lines are a choice of the part's before it was cut, in
+    // its order, and stand behind all parts'. Such a part itself keeps the points that far views need, and of
+    // its triangles, which are sorted by cell, only all can be drawn.
     std::span<const PackedPart> cells;
     uint32_t dropped_triangles = 0;  // zero area or not finite, left out by the cook
     uint32_t dropped_vertices = 0;   // used by no triangle
@@ -94,8 +94,9 @@ struct Plant {
 };
 
 // Everything is checked before it is used: magic, version, block bounds (overflow-safe), checksums, that all
-// ranges of parts and cells follow each other through their blocks without gaps, that all positions are finite and
-// within k_position_limit_m (description.h). Errors: file_*, format_unknown, value_out_of_range.
+// ranges of parts and cells follow each other through their blocks without gaps, that cells share their parts
+// out, that all positions are finite and within k_position_limit_m (description.h). Errors: file_*,
+// format_unknown, value_out_of_range.
 Result<Plant> load_plant(const std::string& path);
 Result<Plant> load_plant_from_memory(std::shared_ptr<const std::vector<std::byte>> bytes,
                                      const std::string& name);

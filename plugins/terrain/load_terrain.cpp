@@ -16,11 +16,14 @@ namespace {
 
 class LoadedTerrain final : public Terrain {
   public:
-    LoadedTerrain(HeightField field, const GroundSettings& settings, dvec3 origin_world)
+    // light: as Terrain::light, or empty where nothing shades the ground yet.
+    LoadedTerrain(HeightField field, const GroundSettings& settings, std::vector<float> light,
+                  dvec3 origin_world)
         : field_(std::move(field)), origin_world_(origin_world), mesh_(build_patches(field_)) {
         ground_.normals = make_normals(field_);
         ground_.colors_linear = color_ground(field_, ground_.normals, settings, origin_world_);
-        ground_.light.assign(field_.heights_m.size(), 1.0f);
+        ground_.light = std::move(light);
+        ground_.light.resize(field_.heights_m.size(), 1.0f);
         for (const TerrainPatch& patch : mesh_.patches) bounds_local_.include(patch.bounds_local);
     }
 
@@ -49,6 +52,7 @@ class LoadedTerrain final : public Terrain {
         return {vec2(field_.x_of(0), field_.z_of(0)), field_.cell_m, field_.columns - 1, field_.rows - 1};
     }
     std::span<const float> least_heights() const override { return mesh_.least_heights; }
+    std::span<const float> light() const override { return ground_.light; }
 
   private:
     HeightField field_;
@@ -189,6 +193,19 @@ Result<HeightField> read_file(JsonObject object, const std::string& base_dir) {
     return read_heights((std::filesystem::path(base_dir) / name).lexically_normal().string(), settings);
 }
 
+Result<std::vector<float>> read_light(const std::string& path, const HeightField& field) {
+    COPPICE_TRY(HeightField light, read_heights(path, {}));
+    if (light.columns != field.columns || light.rows != field.rows)
+        return fail(ErrorId::value_out_of_range, path, "header",
+                    fmt::format("{} x {} samples of light", light.columns, light.rows),
+                    fmt::format("the ground's {} x {}", field.columns, field.rows));
+    if (std::any_of(light.heights_m.begin(), light.heights_m.end(),
+                    [](float v) { return !(v >= 0.0f && v <= 1.0f); }))
+        return fail(ErrorId::value_out_of_range, path, "", "light that is not in [0, 1]",
+                    "1: nothing shades it");
+    return std::move(light.heights_m);
+}
+
 }  // namespace
 
 Result<std::shared_ptr<Terrain>> load_terrain(std::string_view json, const std::string& base_dir,
@@ -199,6 +216,7 @@ Result<std::shared_ptr<Terrain>> load_terrain(std::string_view json, const std::
         object.numbers("center", 3, -k_farthest_m, k_farthest_m, std::vector<double>{0.0, 0.0, 0.0});
     GroundSettings ground;
     if (object.has("ground")) ground = read_ground(object.object("ground"));
+    const std::string light_file = object.text("light", "");
     size_t kind = object.one_of({"flat", "heights", "procedural"});
     object.close();
     COPPICE_CHECK(document.status());
@@ -210,7 +228,14 @@ Result<std::shared_ptr<Terrain>> load_terrain(std::string_view json, const std::
         field = kind == 0 ? read_flat(object.object("flat")) : read_procedural(object.object("procedural"));
         COPPICE_CHECK(document.status());
     }
-    return std::make_shared<LoadedTerrain>(std::move(field), ground, dvec3(center[0], center[1], center[2]));
+    std::vector<float> light;
+    if (!light_file.empty()) {
+        COPPICE_TRY(
+            light,
+            read_light((std::filesystem::path(base_dir) / light_file).lexically_normal().string(), field));
+    }
+    return std::make_shared<LoadedTerrain>(std::move(field), ground, std::move(light),
+                                           dvec3(center[0], center[1], center[2]));
 }
 
 }  // namespace coppice

@@ -60,10 +60,13 @@ class Terrain {
     // Of each level k_blocks_across^2 blocks, row by row: the least height of its drawn surface, skirts left out;
     // -infinity where a narrow patch has no block.
     virtual std::span<const float> least_heights() const { return {}; }
+    // What is left of the light on the ground after all shading, [0, 1], one a sample of the field, row by row from its
+    // corner of least x and z: to be kept and given back as "light", where what shaded it is not at hand.
+    virtual std::span<const float> light() const { return {}; }
 };
 
 inline constexpr const char* k_terrain_interface = "coppice.terrain";
-inline constexpr uint32_t k_terrain_version = 2;
+inline constexpr uint32_t k_terrain_version = 3;
 
 struct TerrainInterface {
     uint32_t size_bytes;

@@ -12,6 +12,7 @@ using Command = std::function<Status()>;
 void add_cook(CLI::App& app, Command& chosen);
 void add_inspect(CLI::App& app, Command& chosen);
 void add_play(CLI::App& app, Command& chosen);
+void add_populate(CLI::App& app, Command& chosen);
 void add_bench(CLI::App& app, Command& chosen);
 void add_bundle(CLI::App& app, Command& chosen);
 

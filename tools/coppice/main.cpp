@@ -52,6 +52,7 @@ int run(int argc, char** argv) {
     add_cook(app, chosen);
     add_inspect(app, chosen);
     add_play(app, chosen);
+    add_populate(app, chosen);
     add_bench(app, chosen);
     add_bundle(app, chosen);
 

@@ -1,0 +1,236 @@
+#include "tools/coppice/populate_pieces.h"
+
+#include <algorithm>
+#include <cstring>
+#include <filesystem>
+#include <map>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include "plugins/vegetation/cook/cook_file.h"
+#include "plugins/vegetation/eco/load_scene.h"
+#include "plugins/vegetation/eco/make_tiles.h"
+#include "plugins/vegetation/eco/shade_ground.h"
+#include "runtime/core/file.h"
+#include "runtime/core/hash.h"
+#include "runtime/core/mapped_file.h"
+#include "tools/coppice/opened_files.h"
+
+namespace coppice {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string path_of(const Pieces& pieces, const std::string& name) {
+    return (fs::path(pieces.settings.folder) / name).lexically_normal().string();
+}
+
+Status list_plants(Pieces& pieces) {
+    std::map<std::string, uint32_t> known;
+    for (const SceneModel& model : pieces.scene.models) {
+        COPPICE_TRY(const std::string path,
+                    cooked_path(pieces.settings.folder, model.source_path, model.variation, CookSettings{}));
+        const std::string name = "plants/" + fs::path(path).filename().string();
+        const auto [at, is_new] = known.emplace(name, uint32_t(pieces.plants.size()));
+        if (is_new) pieces.plants.push_back({name, model.source_path, model.variation});
+        pieces.plant_of_model.push_back(at->second);
+    }
+    return {};
+}
+
+void list_packs(Pieces& pieces) {
+    const std::string stem = fs::path(pieces.settings.scene).stem().stem().string();
+    const std::vector<SceneTile>& tiles = pieces.scene.tiles;
+    for (uint32_t first = 0; first < tiles.size();) {
+        uint64_t plant_count = tiles[first].plant_count;
+        uint32_t last = first + 1;
+        while (last < tiles.size() && plant_count + tiles[last].plant_count <= pieces.settings.pack_plants)
+            plant_count += tiles[last++].plant_count;
+        pieces.packs.push_back(
+            {fmt::format("tiles/{}-{}.tiles", stem, pieces.packs.size()), first, last - first});
+        first = last;
+    }
+}
+
+// The tiles of one pack as a scene of their own, with the models of all.
+Scene cut_scene(const Pieces& pieces, const PackPiece& piece, std::span<const Plant> plants) {
+    const Scene& whole = pieces.scene;
+    Scene part;
+    part.models = whole.models;
+    std::vector<Box> bounds;
+    for (size_t m = 0; m < part.models.size(); ++m) {
+        part.models[m].source_path = pieces.plants[pieces.plant_of_model[m]].name;
+        bounds.push_back(plants[m].bounds_plant);
+    }
+    part.tiles.assign(whole.tiles.begin() + piece.first_tile,
+                      whole.tiles.begin() + piece.first_tile + piece.tile_count);
+    for (SceneTile& tile : part.tiles) {
+        const size_t first = tile.first_plant, last = first + tile.plant_count;
+        tile.first_plant = uint32_t(part.positions.size());
+        auto append = [first, last](auto& column, const auto& from) {
+            column.insert(column.end(), from.begin() + ptrdiff_t(first), from.begin() + ptrdiff_t(last));
+        };
+        append(part.positions, whole.positions);
+        append(part.turns, whole.turns);
+        append(part.plant_models, whole.plant_models);
+    }
+    finish_tiles(part, bounds);
+    return part;
+}
+
+// Of all that the pack is made of.
+uint64_t key_of(const Scene& part, std::span<const Plant> plants) {
+    uint64_t key = hash_combine(k_tiles_version, part.models.size());
+    auto add = [&key](const void* bytes, size_t size_bytes) {
+        key = hash_combine(key, hash_bytes(bytes, size_bytes));
+    };
+    for (size_t m = 0; m < part.models.size(); ++m) {
+        const SceneModel& model = part.models[m];
+        add(model.name.data(), model.name.size());
+        add(model.source_path.data(), model.source_path.size());
+        add(&model.importance, sizeof model.importance);
+        key = hash_combine(key, plants[m].content_hash);
+    }
+    for (const SceneTile& tile : part.tiles) {
+        add(&tile.tile.origin_world, sizeof tile.tile.origin_world);
+        add(&tile.plant_count, sizeof tile.plant_count);
+    }
+    add(part.positions.data(), part.positions.size() * sizeof(PlantPosition));
+    add(part.turns.data(), part.turns.size() * sizeof(PlantTurn));
+    add(part.plant_models.data(), part.plant_models.size() * sizeof(PlantModel));
+    return key;
+}
+
+bool is_kept(const std::string& path, uint64_t key) {
+    const auto pack = open_tile_pack(path);
+    return pack && pack->key == key && check_blocks(*pack);
+}
+
+// Leaves a file that has these bytes as it is, and its time with it.
+Result<Outcome> write_if_different(const std::string& path, std::span<const std::byte> bytes) {
+    if (const auto old = MappedFile::open(path);
+        old && std::equal(old->bytes().begin(), old->bytes().end(), bytes.begin(), bytes.end()))
+        return Outcome::kept;
+    COPPICE_CHECK(write_file(path, bytes));
+    return Outcome::made;
+}
+
+// Puts a file that belongs to the ground into our folder; its name there.
+Result<std::string> put_beside(const Pieces& pieces, const fs::path& name, std::span<const std::byte> bytes) {
+    const std::string hashed =
+        fmt::format("terrain/{}-{}{}", name.stem().string(),
+                    hash_to_hex(hash_bytes(bytes.data(), bytes.size())), name.extension().string());
+    COPPICE_CHECK(write_if_different(path_of(pieces, hashed), bytes));
+    return hashed;
+}
+
+// The light that all plants leave on the ground, as a Pf picture, whose rows go from the bottom.
+std::string picture_of_light(const Terrain& terrain) {
+    const TerrainLayout layout = terrain.layout();
+    const size_t columns = layout.cells_x + 1, rows = layout.cells_z + 1;
+    const auto light = std::as_bytes(terrain.light());
+    std::string picture = fmt::format("Pf\n{} {}\n-1.0\n", columns, rows);
+    for (size_t row = rows; row-- > 0;)
+        picture.append(reinterpret_cast<const char*>(light.data()) + row * columns * sizeof(float),
+                       columns * sizeof(float));
+    return picture;
+}
+
+// The terrain as it is read from our folder: with the file of its heights, and shaded by all plants, which a player that
+// streams them never has at once.
+Result<std::string> bring_terrain(const Pieces& pieces, std::span<const Plant> plants) {
+    if (pieces.terrain_json.empty()) return std::string();
+    const fs::path folder = fs::path(pieces.settings.scene).parent_path();
+    COPPICE_TRY(const std::shared_ptr<Terrain> terrain,
+                pieces.settings.terrain->load(pieces.terrain_json, folder.string(), pieces.settings.scene));
+    std::vector<Box> bounds;
+    for (const Plant& plant : plants) bounds.push_back(plant.bounds_plant);
+    shade_ground(pieces.scene, *terrain, bounds);
+
+    nlohmann::json json = nlohmann::json::parse(pieces.terrain_json);
+    const nlohmann::json::json_pointer heights("/heights/file");
+    if (json.contains(heights)) {
+        const fs::path source = folder / json[heights].get<std::string>();
+        COPPICE_TRY(const MappedFile file, MappedFile::open(source.lexically_normal().string()));
+        COPPICE_TRY(json[heights], put_beside(pieces, source.filename(), file.bytes()));
+    }
+    const std::string picture = picture_of_light(*terrain);
+    COPPICE_TRY(json["light"], put_beside(pieces, "light.pfm", std::as_bytes(std::span(picture))));
+    return json.dump();
+}
+
+}  // namespace
+
+Result<Pieces> list_pieces(const PopulateSettings& settings) {
+    Pieces pieces;
+    pieces.settings = settings;
+    const std::string cache_dir = settings.cache_dir.empty() ? default_cache_dir() : settings.cache_dir;
+    {
+        OpenedFiles opened;
+        COPPICE_TRY(pieces.scene,
+                    load_scene(settings.scene, {settings.terrain, settings.modeller, cache_dir}));
+        COPPICE_CHECK(list_plants(pieces));
+        pieces.authored = opened.paths();
+    }
+    list_packs(pieces);
+    // It was parsed before: this only looks for what the scene in memory does not keep.
+    COPPICE_TRY(const std::string text, read_text_file(settings.scene));
+    const nlohmann::json root = nlohmann::json::parse(text, nullptr, false);
+    if (root.is_object() && root.contains("terrain")) pieces.terrain_json = root["terrain"].dump();
+    return pieces;
+}
+
+Result<Outcome> make_plant(const Pieces& pieces, const PlantPiece& piece) {
+    const std::string path = path_of(pieces, piece.name);
+    if (load_plant(path)) return Outcome::kept;
+    if (piece.source_path.ends_with(".plant")) {
+        COPPICE_TRY(const Plant plant, load_plant(piece.source_path));
+        COPPICE_CHECK(write_file(path, plant.file->bytes()));
+        return Outcome::made;
+    }
+    COPPICE_CHECK(cook_file(piece.source_path, path, piece.variation, CookSettings{},
+                            pieces.settings.modeller, pieces.settings.images));
+    return Outcome::made;
+}
+
+Result<std::vector<Plant>> load_plants(const Pieces& pieces) {
+    std::vector<Plant> different, plants;
+    for (const PlantPiece& piece : pieces.plants) {
+        COPPICE_TRY(Plant plant, load_plant(path_of(pieces, piece.name)));
+        different.push_back(std::move(plant));
+    }
+    for (uint32_t p : pieces.plant_of_model) plants.push_back(different[p]);
+    return plants;
+}
+
+Result<Outcome> make_pack(const Pieces& pieces, const PackPiece& piece, std::span<const Plant> plants) {
+    const std::string path = path_of(pieces, piece.name);
+    const Scene part = cut_scene(pieces, piece, plants);
+    const uint64_t key = key_of(part, plants);
+    if (is_kept(path, key)) return Outcome::kept;
+    COPPICE_CHECK(write_tile_pack(path, build_tile_tree(part, plants), part, plants, key));
+    return Outcome::made;
+}
+
+Result<Outcome> make_scene(const Pieces& pieces, std::span<const Plant> plants) {
+    PopulatedScene populated;
+    Scene& scene = populated.scene;
+    scene.name = pieces.scene.name;
+    scene.models = pieces.scene.models;
+    for (size_t m = 0; m < scene.models.size(); ++m) {
+        scene.models[m].source_path = pieces.plants[pieces.plant_of_model[m]].name;
+        populated.model_content_hashes.push_back(plants[m].content_hash);
+    }
+    scene.light = pieces.scene.light;
+    scene.camera_path = pieces.scene.camera_path;
+    scene.sample_distance_px = pieces.scene.sample_distance_px;
+    for (const PackPiece& piece : pieces.packs) {
+        COPPICE_TRY(const TilePack pack, open_tile_pack(path_of(pieces, piece.name)));
+        const PackedTileNode root = pack.nodes.empty() ? PackedTileNode{} : pack.nodes[0];
+        populated.packs.push_back({piece.name, pack.content_hash, root.plant_count, root.triangle_count});
+    }
+    COPPICE_TRY(populated.terrain_json, bring_terrain(pieces, plants));
+    const std::string text = write_populated_scene(populated);
+    return write_if_different(path_of(pieces, k_scene_piece), std::as_bytes(std::span(text)));
+}
+
+}  // namespace coppice

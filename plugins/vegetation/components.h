@@ -36,7 +36,7 @@ struct Tile {
     static constexpr const char* k_component_name = "tile";
     dvec3 origin_world;
     Box bounds_tile;
-    uint32_t plant_count = 0;
+    uint64_t plant_count = 0;
 };
 
 // What stands for a tile in the distance, and what it consists of; beside Tile. All tiles of a scene are one chunk, row 0

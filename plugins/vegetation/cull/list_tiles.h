@@ -23,7 +23,7 @@ struct CloudTile {
     vec3 origin_camera;  // m
     Box bounds_camera;
     float nearest_m;  // from the viewer to the bounds
-    uint32_t plant_count;
+    uint64_t plant_count;
     uint64_t triangle_count;
 };
 

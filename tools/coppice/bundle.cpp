@@ -5,8 +5,6 @@
 #include <filesystem>
 #include <map>
 #include <memory>
-#include <mutex>
-#include <set>
 #include <fmt/format.h>
 #include "plugins/images/images.h"
 #include "plugins/modeller/modeller.h"
@@ -15,11 +13,12 @@
 #include "plugins/vegetation/eco/load_scene.h"
 #include "plugins/vegetation/eco/plant_scene.h"
 #include "runtime/core/file.h"
-#include "runtime/core/file_watcher.h"
+#include "runtime/core/log.h"
 #include "runtime/plugin/registry.h"
 #include "tools/coppice/bundle_folder.h"
 #include "tools/coppice/command.h"
 #include "tools/coppice/loaded_objects.h"
+#include "tools/coppice/opened_files.h"
 #include "tools/coppice/play_host.h"
 
 namespace coppice {
@@ -46,31 +45,14 @@ struct BundleCommand {
     uint32_t limit_mib = 64;
 };
 
-// What is opened as long as it lives.
-class OpenedFiles {
-  public:
-    OpenedFiles() { set_file_watcher(&OpenedFiles::add, this); }
-    ~OpenedFiles() { set_file_watcher(nullptr, nullptr); }
-    OpenedFiles(const OpenedFiles&) = delete;
-    OpenedFiles& operator=(const OpenedFiles&) = delete;
-    const std::set<std::string>& paths() const { return paths_; }
-
-  private:
-    static void add(void* context, const std::string& path) {
-        OpenedFiles& self = *static_cast<OpenedFiles*>(context);
-        std::lock_guard lock(self.mutex_);
-        self.paths_.insert(fs::path(path).lexically_normal().string());
-    }
-    std::mutex mutex_;
-    std::set<std::string> paths_;
-};
-
+// Without a slash at its end.
 fs::path absolute_path(const std::string& path) {
     std::error_code error;
-    return fs::absolute(path, error).lexically_normal();
+    const fs::path absolute = fs::absolute(path, error).lexically_normal();
+    return absolute.has_filename() ? absolute : absolute.parent_path();
 }
 
-// The scene's path as seen from here, so that a file opened by an absolute path was named by one.
+// As seen from here, so that what is opened by an absolute path was named by one.
 std::string relative_path(const std::string& path) {
     std::error_code error;
     return absolute_path(path).lexically_relative(fs::current_path(error)).string();
@@ -108,7 +90,8 @@ Status load_scene_and_plants(const std::string& scene_path, const std::string& c
         if (source.path.ends_with(".plant")) continue;
         COPPICE_TRY(const std::string cooked,
                     cooked_path(cache_dir, source.path, source.variation, CookSettings{}));
-        if (!fs::exists(cooked))
+        std::error_code error;
+        if (!fs::exists(cooked, error))
             return fail(ErrorId::write_failed, cooked, "", "what was cooked cannot be kept in the cache",
                         "name a folder that can be written with --cache");
     }
@@ -121,10 +104,13 @@ struct SceneFiles {
 
 Result<SceneFiles> find_scene_files(const std::string& scene_path, const std::string& cache_dir,
                                     Registry& registry) {
-    // The first time fills the cache, the second reads all there is to read.
+    // The first time fills the cache and says what there is to say, the second reads all there is to read.
     COPPICE_CHECK(load_scene_and_plants(scene_path, cache_dir, registry));
     OpenedFiles opened;
-    COPPICE_CHECK(load_scene_and_plants(scene_path, cache_dir, registry));
+    set_log_sink([](void*, LogLevel, std::string_view) {}, nullptr);
+    const Status again = load_scene_and_plants(relative_path(scene_path), cache_dir, registry);
+    set_log_sink(nullptr, nullptr);
+    COPPICE_CHECK(again);
     SceneFiles files;
     for (const std::string& path : opened.paths()) {
         if (is_inside(path, cache_dir))
@@ -262,8 +248,8 @@ Status run(const BundleCommand& command) {
     // Found out before the work, not after it.
     COPPICE_TRY(const BundleFolder folder, BundleFolder::open(command.folder));
     const bool of_content = command.scene.find_first_of("/.") == std::string::npos;
-    const std::string scene_path = relative_path(
-        of_content ? fmt::format("{}/scenes/{}.eco.json", command.content, command.scene) : command.scene);
+    const std::string scene_path =
+        of_content ? fmt::format("{}/scenes/{}.eco.json", command.content, command.scene) : command.scene;
     Registry registry;
     for (const char* name : k_player_plugins) COPPICE_CHECK(registry.load(name));
     const std::vector<std::string> loaded = loaded_objects();

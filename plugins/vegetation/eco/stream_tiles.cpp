@@ -14,6 +14,8 @@ TileStreamer::TileStreamer(std::vector<TilePack> packs, const TileStreamSettings
         block_count += 2 * uint32_t(pack.nodes.size());
     }
     blocks_.resize(block_count);
+    held_.reserve(block_count);
+    victims_.reserve(block_count);
     for (uint32_t t = 0; t < std::max(settings.thread_count, 1u); ++t)
         threads_.emplace_back([this](const std::stop_token& stopping) { read_blocks(stopping); });
 }
@@ -86,6 +88,8 @@ void TileStreamer::wanted(std::span<const TileRequest> requests) {
         return a.priority != b.priority ? a.priority > b.priority : a.block < b.block;
     });
     take_back_queue();
+    waiting_.reserve(wishes_.capacity());
+    spare_queue_.reserve(wishes_.capacity());
     admit_wishes();
     {
         std::lock_guard lock(mutex_);

@@ -59,11 +59,11 @@ class TileStreamer {
     const std::vector<TilePack>& packs() const { return packs_; }
 
     // All that the frame would like to have, also what it has already, in any order: in place of what was wanted before.
-    // What was not begun and is not wanted any more is not read. Requires packs and nodes that exist. No allocations once
-    // it was called with as many.
+    // What was not begun and is not wanted any more is not read. Requires packs and nodes that exist. Allocates nothing once
+    // it was called twice with as many.
     void wanted(std::span<const TileRequest> requests);
     // What has come since the last call, in place of what `finished` held; in the order of priority with one thread. It
-    // counts as resident until it is released.
+    // counts as resident until it is released. Allocates nothing where `finished` has room.
     void take_finished(std::vector<FinishedTileBlock>& finished);
     // Requires a block that was taken without an error and not released since.
     void release(TileBlockName block);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 #include "runtime/core/hash.h"
 #include "runtime/core/jobs.h"
 
@@ -121,13 +122,19 @@ struct Mean {
 
 Mean mean_around(const HeightField& field, const GroundSurface& ground, uint32_t sample, uint32_t step) {
     uint32_t row = sample / field.columns, column = sample % field.columns, reach = step / 2;
-    uint32_t column_end = std::min(column + reach, field.columns - 1),
-             row_end = std::min(row + reach, field.rows - 1);
+    // Of a periodic field's samples, those beyond the border are inside again.
+    auto ends = [&](uint32_t at, uint32_t samples) {
+        int64_t first = int64_t(at) - reach, last = int64_t(at) + reach;
+        if (!field.periodic) first = std::max<int64_t>(first, 0), last = std::min<int64_t>(last, samples - 1);
+        return std::pair(first, last);
+    };
+    const auto [column_first, column_last] = ends(column, field.columns);
+    const auto [row_first, row_last] = ends(row, field.rows);
     Mean mean;
     float count = 0.0f;
-    for (uint32_t j = row - std::min(row, reach); j <= row_end; ++j)
-        for (uint32_t i = column - std::min(column, reach); i <= column_end; ++i) {
-            size_t at = size_t(j) * field.columns + i;
+    for (int64_t j = row_first; j <= row_last; ++j)
+        for (int64_t i = column_first; i <= column_last; ++i) {
+            size_t at = field.wrapped_sample(i, j);
             mean.normal += ground.normals[at];
             // Not all the way: openness already takes the skylight away, colour stands for the sun's share.
             mean.color += ground.colors_linear[at] * (0.4f + 0.6f * ground.light[at]);
@@ -200,10 +207,13 @@ TerrainMesh build_patches(const HeightField& field) {
             // rounding to pixels opens.
             float beside = 0.0f;
             size_t i = p % across, j = p / across;
-            if (i > 0) beside = std::max(beside, worst(p - 1));
-            if (i + 1 < across) beside = std::max(beside, worst(p + 1));
-            if (j > 0) beside = std::max(beside, worst(p - across));
-            if (j + 1 < down) beside = std::max(beside, worst(p + across));
+            if (i > 0 || field.periodic) beside = std::max(beside, worst(i > 0 ? p - 1 : p + across - 1));
+            if (i + 1 < across || field.periodic)
+                beside = std::max(beside, worst(i + 1 < across ? p + 1 : p - i));
+            if (j > 0 || field.periodic)
+                beside = std::max(beside, worst(j > 0 ? p - across : p + across * (down - 1)));
+            if (j + 1 < down || field.periodic)
+                beside = std::max(beside, worst(j + 1 < down ? p + across : i));
             TerrainPatch& out = mesh.patches[p];
             for (uint32_t level = 0; level < out.level_count; ++level) {
                 uint32_t index = out.first_level + level, step = 1u << level;
@@ -245,6 +255,9 @@ void color_vertices(const HeightField& field, const GroundSurface& ground, Terra
                         size_t at = size_t(row) * across + column;
                         uint32_t sample =
                             ((row << shift) + row_first) * field.columns + (column << shift) + column_first;
+                        // The same dither wherever a sample is the same place.
+                        uint32_t place =
+                            uint32_t(field.wrapped_sample(sample % field.columns, sample / field.columns));
                         Mean mean = mean_around(field, ground, sample, 1u << shift);
                         // On the border nothing is owed: both patches there must come to the same colour.
                         bool border = column == 0 || row == 0 || column + 1 == across || row + 1 == down;
@@ -259,7 +272,7 @@ void color_vertices(const HeightField& field, const GroundSurface& ground, Terra
                         owed[at + across] += rest * 5.0f;
                         words[at] = encode_surface(
                             {normalize_or(mean.normal, vec3(0, 1, 0)), color, mean.light, false},
-                            mix_bits(sample + mix_bits(shift + 1u)));
+                            mix_bits(place + mix_bits(shift + 1u)));
                     }
                 const TerrainLevel& level = mesh.levels[index];
                 for (uint32_t v = level.first_vertex; v < level.first_vertex + level.vertex_count; ++v) {

@@ -10,10 +10,11 @@ namespace {
 
 float natural_height(const GrowHeightsSettings& s, const Region& valley, double x, double z) {
     double u = x / double(s.wavelength_m), v = z / double(s.wavelength_m);
-    float hills = fractal_noise(u, v, s.octaves, s.roughness, s.seed);
+    double period = s.periodic ? double(s.size_m) / double(s.wavelength_m) : 0.0;
+    float hills = fractal_noise(u, v, s.octaves, s.roughness, s.seed, period);
     if (s.ridges > 0.0f) {
-        float crest =
-            1.0f - 2.5f * std::fabs(fractal_noise(u * 0.7, v * 0.7, s.octaves, s.roughness, s.seed + 77u));
+        float crest = 1.0f - 2.5f * std::fabs(fractal_noise(u * 0.7, v * 0.7, s.octaves, s.roughness,
+                                                            s.seed + 77u, period * 0.7));
         hills += s.ridges * (0.5f * crest - hills);
     }
     float trough = 0.0f;
@@ -35,6 +36,7 @@ HeightField grow_heights(const GrowHeightsSettings& s) {
     uint32_t cells = cells_along(s.size_m, s.cell_m);
     field.columns = field.rows = cells + 1;
     field.cell_m = s.size_m / float(cells);
+    field.periodic = s.periodic;
     field.heights_m.resize(size_t(field.columns) * field.rows);
     Region valley;
     if (s.valley.size() >= 2) {
@@ -57,6 +59,7 @@ HeightField grow_heights(const GrowHeightsSettings& s) {
                 field.heights_m[size_t(row) * field.columns + column] = height;
             }
     });
+    repeat_border(field, field.heights_m);
     return field;
 }
 

@@ -1,10 +1,10 @@
 #include "plugins/vegetation/eco/populated_scene.h"
 
 #include <cassert>
-#include <charconv>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include "plugins/shared/json_object.h"
+#include "plugins/vegetation/eco/mosaic.h"
 #include "runtime/core/file.h"
 #include "runtime/core/hash.h"
 
@@ -74,16 +74,6 @@ CameraKey read_key(JsonObject object) {
     return key;
 }
 
-// 16 hexadecimal digits.
-uint64_t read_hash(JsonObject& object, const char* key) {
-    const std::string text = object.text(key);
-    uint64_t hash = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), hash, 16);
-    if (text.size() != 16 || error != std::errc() || end != text.data() + text.size())
-        object.report(ErrorId::value_out_of_range, key, "\"" + text + "\" is no content hash", k_remedy);
-    return hash;
-}
-
 }  // namespace
 
 std::string write_populated_scene(const PopulatedScene& populated) {
@@ -131,7 +121,7 @@ Result<PopulatedScene> load_populated_scene(const std::string& path, const Terra
     for (JsonObject& object : root.objects("packs")) {
         ScenePack& pack = populated.packs.emplace_back();
         pack.path = resolve(object.text("file"));
-        pack.content_hash = read_hash(object, "content");
+        pack.content_hash = read_content_hash(object);
         pack.plant_count = object.whole("plants", 0, k_most_count);
         pack.triangle_count = object.whole("triangles", 0, k_most_count);
         object.close();
@@ -140,7 +130,7 @@ Result<PopulatedScene> load_populated_scene(const std::string& path, const Terra
         SceneModel& model = scene.models.emplace_back();
         model.name = object.text("name");
         model.source_path = resolve(object.text("file"));
-        populated.model_content_hashes.push_back(read_hash(object, "content"));
+        populated.model_content_hashes.push_back(read_content_hash(object));
         model.importance = object.real("importance", 0.001f, 1000.0f);
         object.close();
     }

@@ -1,19 +1,11 @@
 #include "plugins/vegetation/draw/expand_plants.h"
 
 #include <algorithm>
+#include <cmath>
 #include "plugins/vegetation/eco/part_chance.h"
 
 namespace coppice {
 namespace {
-
-WorkInstance instance_of(const mat3& rotation, float scale, vec3 position) {
-    WorkInstance instance{};
-    for (int row = 0; row < 3; ++row) {
-        for (int column = 0; column < 3; ++column) instance.rows[row][column] = rotation[column][row] * scale;
-        instance.rows[row][3] = position[row];
-    }
-    return instance;
-}
 
 // Cells of a plant nearer than 3 radii are looked at from where they are. Farther than 6 no side of the plant is much
 // nearer than another, and its parts are drawn in one piece; in between cells are looked at from places that move from
@@ -104,34 +96,19 @@ void expand_clouds(std::span<const CloudTile> tiles, const SceneGeometry& geomet
         view.direction_plant = distance_m > 0.0f ? center * (1.0f / distance_m) : vec3(0.0f, 0.0f, -1.0f);
         const float nearest_pixels_per_meter =
             frustum.focal_px / std::max(tile.nearest_m, frustum.near_m) * stretch;
+        // Asked for more than the cloud has, it is drawn with larger points until what is nearer has been read.
+        FrameSettings tile_settings = settings;
+        tile_settings.sample_distance_px =
+            std::max(settings.sample_distance_px,
+                     nearest_pixels_per_meter / std::sqrt(std::max(tile.finest_density, 1e-12f)));
         // A tile around the image plane has no depth to go by: all of it is drawn as its nearest place asks for.
         const float depth_m = std::max(glm::dot(frustum.forward, center), 0.0f);
         const PartChoice choice = choose_cloud(cloud.part, cloud.densities, cloud.mean_area_m2, view, depth_m,
-                                               nearest_pixels_per_meter, settings);
+                                               nearest_pixels_per_meter, tile_settings);
         if (choice.points == 0) continue;
         work.add(cloud.geometry, choice, work.add_instance(instance_of(mat3(1.0f), 1.0f, tile.origin_camera)),
                  turn);
     }
-}
-
-uint64_t expand_terrain(const Terrain& terrain, uint32_t first_vertex, dvec3 camera_world,
-                        const Frustum& frustum, const FrameSettings& settings, WorkPart& work) {
-    const float error_px = settings.level_of_detail ? 1.0f : 0.0f;
-    vec3 origin = vec3(terrain.origin_world() - camera_world);
-    uint32_t instance = work.add_instance(instance_of(mat3(1.0f), 1.0f, origin));
-    uint64_t triangles = 0;
-    for (const TerrainPatch& patch : terrain.patches()) {
-        Box bounds{patch.bounds_local.min + origin, patch.bounds_local.max + origin};
-        if (patch.level_count == 0 || see_box(frustum, bounds) == Visibility::outside) continue;
-        float distance_m =
-            std::max(glm::length(glm::clamp(vec3(0.0f), bounds.min, bounds.max)), frustum.near_m);
-        auto levels = terrain.levels().subspan(patch.first_level, patch.level_count);
-        size_t level = levels.size() - 1;
-        while (level > 0 && levels[level].error_m * frustum.focal_px > error_px * distance_m) --level;
-        work.add_ground(first_vertex + levels[level].first_vertex, levels[level].vertex_count / 3, instance);
-        triangles += levels[level].vertex_count / 3;
-    }
-    return triangles;
 }
 
 }  // namespace coppice

@@ -19,9 +19,4 @@ ExpandCounts expand_plants(const PlantRun& run, const SceneGeometry& geometry, c
 void expand_clouds(std::span<const CloudTile> tiles, const SceneGeometry& geometry, const Frustum& frustum,
                    const FrameSettings& settings, uint32_t rest_index, WorkPart& work);
 
-// The terrain's patches in view, each at the coarsest level whose error stays under a pixel, or all at the finest
-// without levels of detail. Returns the triangles.
-uint64_t expand_terrain(const Terrain& terrain, uint32_t first_vertex, dvec3 camera_world,
-                        const Frustum& frustum, const FrameSettings& settings, WorkPart& work);
-
 }  // namespace coppice

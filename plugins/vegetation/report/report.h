@@ -9,7 +9,9 @@ struct FrameReport {
     uint32_t tiles_touched = 0;   // looked at on the way down
     uint32_t tiles_expanded = 0;  // whose plants were looked at
     uint32_t clouds = 0;          // tiles that one cloud of points stood for
-    uint32_t plants = 0, plants_visible = 0;
+    uint32_t tiles_missing = 0;   // clouds that stood for what was not in memory yet
+    uint64_t plants = 0;
+    uint32_t plants_visible = 0;
     uint64_t cloud_plants = 0;                      // that clouds stood for
     uint64_t triangles = 0, lines = 0, points = 0;  // drawn, of plants
     uint64_t terrain_triangles = 0;
@@ -21,8 +23,13 @@ struct FrameReport {
     uint64_t dropped_triangles =
         0;                       // large ones beyond the list's capacity in the last finished frame; it grows
     uint32_t rested_frames = 0;  // the picture is the mean of so many frames before this one, and this one
-    double cull_ms = 0.0, lod_ms = 0.0, write_ms = 0.0;  // CPU: tiles, levels, work list
+    double stream_ms = 0.0, cull_ms = 0.0, lod_ms = 0.0, write_ms = 0.0;  // CPU
     uint64_t gpu_bytes = 0;                              // buffers held
+    // Of a world that is read while it is flown over.
+    uint32_t streamed_clouds = 0, streamed_plant_tiles = 0;  // in memory
+    uint64_t stream_bytes_read = 0;                          // since the start, as stored
+    uint64_t stream_resident_bytes = 0;                      // of its budget
+    uint32_t stream_errors = 0;                              // blocks that could not be read, since the start
 };
 
 }  // namespace coppice

@@ -123,7 +123,8 @@ TEST_F(Populate, GivesAPlayerAllOfTheScene) {
     ASSERT_EQ(ground.size(), expected.size());
     EXPECT_EQ(std::memcmp(ground.data(), expected.data(), ground.size_bytes()), 0);
 
-    auto packs = open_packs(*populated, plants);
+    EXPECT_TRUE(check_plants(*populated, plants));
+    auto packs = open_packs(*populated);
     ASSERT_TRUE(packs) << to_string(packs.error());
     ASSERT_GE(packs->size(), 3u);
     uint64_t plant_count = 0, triangle_count = 0;

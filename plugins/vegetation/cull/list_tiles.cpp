@@ -6,11 +6,12 @@
 namespace coppice {
 
 void TileList::list(const Tiles& tiles, const Plants& plants, const Frustum& frustum, dvec3 camera_world,
-                    float sample_distance_px) {
+                    const Settings& settings) {
+    const float sample_distance_px = settings.sample_distance_px;
     runs_.clear();
     clouds_.clear();
     expanded_.clear();
-    tile_count = expanded_tile_count = plant_count = touched_tile_count = 0;
+    tile_count = expanded_tile_count = plant_count = touched_tile_count = hidden_tile_count = 0;
     std::span<const Tile> tile_of_row;
     std::span<const TileLevels> levels_of_row;
     tiles.each_chunk(
@@ -43,6 +44,10 @@ void TileList::list(const Tiles& tiles, const Plants& plants, const Frustum& fru
             if (visibility == Visibility::outside) continue;
             inside = visibility == Visibility::inside;
         }
+        if (settings.horizon && settings.horizon->hidden(bounds, settings.spread_px)) {
+            ++hidden_tile_count;
+            continue;
+        }
         const float nearest_m = glm::length(glm::clamp(vec3(0.0f), bounds.min, bounds.max));
         // What is nearest asks for most.
         const float most_px = frustum.focal_px / std::max(nearest_m, frustum.near_m) *
@@ -52,7 +57,8 @@ void TileList::list(const Tiles& tiles, const Plants& plants, const Frustum& fru
             clouds_.push_back(
                 {levels.cloud, origin, bounds, nearest_m, tile.plant_count, levels.triangle_count});
         else if (levels.child_count == 0)
-            expanded_.push_back({nearest_m, row, inside, origin});
+            expanded_.push_back({nearest_m, row, inside, origin,
+                                 settings.horizon && settings.horizon->hides_some(bounds)});
         else
             for (uint32_t child = 0; child < levels.child_count; ++child)
                 pending_.push_back({levels.first_child + child, inside});
@@ -70,7 +76,8 @@ void TileList::list(const Tiles& tiles, const Plants& plants, const Frustum& fru
         for (size_t first = 0; first < of.positions.size(); first += k_plants_a_run) {
             const size_t count = std::min<size_t>(k_plants_a_run, of.positions.size() - first);
             runs_.push_back({tile.origin_camera, tile.inside, of.positions.subspan(first, count),
-                             of.turns.subspan(first, count), of.models.subspan(first, count)});
+                             of.turns.subspan(first, count), of.models.subspan(first, count),
+                             tile.may_be_hidden});
         }
     }
 }

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 #include "plugins/vegetation/cull/frustum.h"
+#include "plugins/vegetation/cull/horizon.h"
 #include "runtime/ecs/query.h"
 
 namespace coppice {
@@ -15,6 +16,7 @@ struct PlantRun {
     std::span<const PlantPosition> positions;
     std::span<const PlantTurn> turns;
     std::span<const PlantModel> models;
+    bool may_be_hidden = false;  // some of its plants may be behind the ground
 };
 
 // A tile that its cloud stands for.
@@ -34,16 +36,21 @@ class TileList {
     using Tiles = Query<const Tile, const TileLevels>;
     using Plants = Query<const PlantPosition, const PlantTurn, const PlantModel, Owner<const Tile>>;
 
-    // Order: by distance of the tile's bounds, then by row. Requires a finite camera. sample_distance_px: d'; 0: no
-    // clouds, plants everywhere.
+    struct Settings {
+        float sample_distance_px;          // d'; 0: no clouds, plants everywhere
+        const Horizon* horizon = nullptr;  // what it hides is left out
+        float spread_px = 0.0f;            // how far beside their geometry primitives cover pixels
+    };
+    // Order: by distance of the tile's bounds, then by row. Requires a finite camera.
     void list(const Tiles& tiles, const Plants& plants, const Frustum& frustum, dvec3 camera_world,
-              float sample_distance_px);
+              const Settings& settings);
 
     std::span<const PlantRun> runs() const { return runs_; }
     std::span<const CloudTile> clouds() const { return clouds_; }
     // Leaves of the hierarchy; of those in view, the ones whose plants are looked at.
     uint32_t tile_count = 0, expanded_tile_count = 0, plant_count = 0;
     uint32_t touched_tile_count = 0;  // looked at on the way down
+    uint32_t hidden_tile_count = 0;   // in view but behind the horizon, with all below them
 
   private:
     struct TilePlants {
@@ -56,6 +63,7 @@ class TileList {
         uint32_t row;
         bool inside;
         vec3 origin_camera;
+        bool may_be_hidden;
     };
     struct Pending {
         uint32_t row;

@@ -14,11 +14,11 @@
 #include "plugins/vegetation/cull/list_grounds.h"
 #include "plugins/vegetation/cull/list_tiles.h"
 #include "plugins/vegetation/draw/expand_ground.h"
-#include "plugins/vegetation/draw/expand_plants.h"
+#include "plugins/vegetation/draw/frame_plants.h"
 #include "plugins/vegetation/draw/rasteriser.h"
 #include "plugins/vegetation/draw/tile_residency.h"
+#include "plugins/vegetation/lod/learn_cost.h"
 #include "plugins/vegetation/lod/rest.h"
-#include "runtime/core/jobs.h"
 #include "runtime/core/log.h"
 #include "runtime/plugin/plugin.h"
 
@@ -30,9 +30,14 @@ double now_ms() {
         .count();
 }
 
+PrimitiveCounts counts_of(const FrameReport& report) {
+    return {report.triangles, report.lines, report.points};
+}
+
 class VegetationSystems final : public Vegetation {
   public:
-    explicit VegetationSystems(const VegetationSettings& settings) : settings_(settings) {}
+    explicit VegetationSystems(const VegetationSettings& settings)
+        : settings_(settings), slot_counts_(settings.frame_slots) {}
 
     Status start() {
         COPPICE_TRY(rasteriser_,
@@ -42,8 +47,9 @@ class VegetationSystems final : public Vegetation {
         schedule.add(Phase::stream, 0, "stream_tiles", [this](World& world) { stream_tiles(world); });
         schedule.add(Phase::cull, 0, "list_tiles",
                      [this](TileList::Tiles tiles, TileList::Plants plants) { list_tiles(tiles, plants); });
-        // The runs point into the plants' columns, so this reads them too.
-        schedule.add(Phase::lod, 0, "expand_plants", [this](TileList::Plants) { expand(); });
+        // The runs point into the plants' columns, and another d' asks for other tiles: so this reads them too.
+        schedule.add(Phase::lod, 0, "expand_plants",
+                     [this](TileList::Tiles tiles, TileList::Plants plants) { expand(tiles, plants); });
         schedule.add(Phase::draw, 0, "write_work_list", [this](TileList::Plants) { write_work_list(); });
         schedule.add(Phase::report, 0, "count", [this](TileList::Plants) { count(); });
         return {};
@@ -89,6 +95,10 @@ class VegetationSystems final : public Vegetation {
     void set_light(const Light& light) override { light_ = light; }
     void set_settings(const FrameSettings& settings) override { frame_ = settings; }
     void set_slot(uint32_t slot) override { slot_ = slot; }
+    void set_frame_ms(uint32_t slot, double ms) override {
+        if (slot < slot_counts_.size() && std::exchange(slot_counts_[slot].drawn, false))
+            cost_.learn(slot_counts_[slot].counts, ms);
+    }
     const gpu::Buffer& color() const override { return rasteriser_->color(); }
     ResourceIndex color_resource() const override { return rasteriser_->color_resource(); }
     const gpu::Buffer& visibility() const override { return rasteriser_->visibility(); }
@@ -211,9 +221,24 @@ class VegetationSystems final : public Vegetation {
         if (!keep_) rested_ = 0;
         settled_ = keep_ && rested_ >= frame_.accumulate_limit;
         report_.rested_frames = rested_;
-        resting_ = resting_frame(rested_, frame_);
+        // At rest d' falls from what the moving view's budget left it.
+        FrameSettings rested_from = frame_;
+        if (rested_ > 0) rested_from.sample_distance_px = std::max(frame_.sample_distance_px, last_solved_px_);
+        resting_ = resting_frame(rested_, rested_from);
         drawn_ = frame_;
         drawn_.sample_distance_px = resting_.sample_distance_px;
+        budget_ = find_budget();
+        if (budget_ > 0) drawn_.sample_distance_px = last_solved_px_;
+    }
+
+    // Of the frame; 0: none.
+    uint64_t find_budget() const {
+        const bool by_time = frame_.time_budget_ms > 0.0f;
+        if (!frame_.level_of_detail || rested_ > 0 || (frame_.vertex_budget == 0 && !by_time)) return 0;
+        uint64_t budget = frame_.vertex_budget > 0 ? frame_.vertex_budget : UINT64_MAX;
+        if (by_time)
+            budget = std::min(budget, cost_.vertex_budget_for(double(frame_.time_budget_ms), counts_of(report_)));
+        return std::max<uint64_t>(budget, 1);
     }
 
     // Where the viewer will be: as far on as it came in the slower of the last two frames, so that a cut is no motion.
@@ -228,6 +253,7 @@ class VegetationSystems final : public Vegetation {
         const double begin = now_ms();
         predict_motion();
         frustum_ = make_frustum(camera_, rasteriser_->width(), rasteriser_->height());
+        see_grounds();
         if (residency_) {
             if (residency_->update(world, chunks_.front(), geometry_, *rasteriser_, slot_,
                                    frame_.wait_for_tiles))
@@ -237,21 +263,35 @@ class VegetationSystems final : public Vegetation {
         report_.stream_ms = now_ms() - begin;
     }
 
+    // And what the one that the viewer is above hides.
+    void see_grounds() {
+        const float error_px = ground_error_px(frame_);
+        ground_list_.list(grounds_, frustum_, camera_.position_world, error_px);
+        const Terrain* below = nullptr;
+        dvec3 camera_space(0.0);
+        for (const GroundInView& at : ground_list_.in_view()) {
+            const Box& bounds = grounds_[at.ground].bounds;
+            const vec3 viewer = vec3(-at.space_camera);
+            if (at.flat || viewer.x < bounds.min.x || viewer.x > bounds.max.x || viewer.z < bounds.min.z ||
+                viewer.z > bounds.max.z)
+                continue;
+            below = grounds_[at.ground].terrain.get();
+            camera_space = -at.space_camera;
+            break;
+        }
+        horizon_.build(frame_.occlusion ? below : nullptr, camera_space, frustum_, error_px);
+    }
+
     // What arrives shows what else is needed: once for each level of the hierarchy.
     void wait_for_tiles(World& world) {
         drawn_ = frame_;
         for (int round = 0; round < k_most_rounds; ++round) {
             list(TileList::Tiles(world), TileList::Plants(world));
+            residency_->wish(tile_list_.wishes());
             residency_->wait();
             if (!residency_->update(world, chunks_.front(), geometry_, *rasteriser_, slot_, true)) return;
             moved_ = true;
         }
-    }
-
-    void list(const TileList::Tiles& tiles, const TileList::Plants& plants) {
-        tile_list_.list(tiles, plants, frustum_, camera_.position_world,
-                        {drawn_.level_of_detail ? drawn_.sample_distance_px : 0.0f, motion_m_});
-        if (residency_) residency_->wish(tile_list_.wishes());
     }
 
     void list_tiles(const TileList::Tiles& tiles, const TileList::Plants& plants) {
@@ -259,28 +299,62 @@ class VegetationSystems final : public Vegetation {
         begin_frame();
         if (settled_) return;
         list(tiles, plants);
-        ground_list_.list(grounds_, frustum_, camera_.position_world, ground_error_px());
         report_.cull_ms = now_ms() - begin;
     }
 
-    float ground_error_px() const { return drawn_.level_of_detail ? 1.0f : 0.0f; }
+    // As d' asks for.
+    void list(const TileList::Tiles& tiles, const TileList::Plants& plants) {
+        constexpr float k_slack = 1.0f + 2.0f * k_settled_sample_distance;  // d' may still change by so much
+        listed_px_ = drawn_.sample_distance_px;
+        const Horizon* horizon = horizon_.empty() ? nullptr : &horizon_;
+        const float spread_px =
+            k_slack * widest_spread_px(geometry_.least_importance, geometry_.most_line_width, drawn_);
+        tile_list_.list(tiles, plants, frustum_, camera_.position_world,
+                        {drawn_.level_of_detail ? drawn_.sample_distance_px : 0.0f, motion_m_, horizon,
+                         spread_px});
+        frame_plants_.see(tile_list_, geometry_, frustum_, drawn_, horizon, spread_px);
+    }
 
-    void expand() {
+    // Which tiles are clouds, what they hide and what plants' gains are depends on d' itself, so it is looked for until
+    // it is what it was found with.
+    float solve(const TileList::Tiles& tiles, const TileList::Plants& plants) {
+        double vertices = 0.0;
+        auto settle = [&] {
+            drawn_.sample_distance_px = settle_sample_distance(drawn_.sample_distance_px, [&](float at_px) {
+                drawn_.sample_distance_px = at_px;
+                if (listed_px_ != at_px) list(tiles, plants);
+                const BudgetHistogram& measured =
+                    frame_plants_.measure(tile_list_, geometry_, frustum_, drawn_);
+                const float found_px =
+                    solve_sample_distance(measured, 0, budget_, frame_.sample_distance_px,
+                                          frame_.most_sample_distance_px);
+                vertices = vertices_at(measured, found_px);
+                return found_px;
+            });
+        };
+        settle();
+        const float solved_px = drawn_.sample_distance_px;
+        constexpr double k_tolerance = 0.006;  // of the budget; solve_sample_distance's and rounding
+        if (vertices < (1.0 - k_tolerance) * double(budget_) && solved_px > frame_.sample_distance_px) {
+            drawn_.line_sample_distance_px = solved_px;
+            settle();
+        }
+        if (std::fabs(drawn_.sample_distance_px - listed_px_) > k_settled_sample_distance * listed_px_)
+            list(tiles, plants);
+        return solved_px;
+    }
+
+    void expand(const TileList::Tiles& tiles, const TileList::Plants& plants) {
         if (settled_) return;
         double begin = now_ms();
-        size_t run_count = tile_list_.runs().size();
+        if (rested_ == 0) last_solved_px_ = budget_ > 0 ? solve(tiles, plants) : frame_.sample_distance_px;
+        const size_t run_count = tile_list_.runs().size();
         // The first part is the terrain's: should memory run out, the ground stays. The last one is the clouds'.
         work_.begin(run_count + 2);
-        run_counts_.assign(run_count, {});
-        parallel_for(run_count, 1, [this](size_t first, size_t last) {
-            for (size_t i = first; i < last; ++i)
-                run_counts_[i] = expand_plants(tile_list_.runs()[i], geometry_, frustum_, drawn_,
-                                               resting_.index, work_.part(i + 1));
-        });
-        expand_clouds(tile_list_.clouds(), geometry_, frustum_, drawn_, resting_.index,
-                      work_.part(run_count + 1));
+        frame_plants_.draw(tile_list_, geometry_, frustum_, drawn_, resting_.index, work_, 1);
         report_.terrain_triangles =
-            expand_grounds(ground_list_.in_view(), geometry_, frustum_, ground_error_px(), work_.part(0));
+            expand_grounds(ground_list_.in_view(), geometry_, frustum_, ground_error_px(drawn_), work_.part(0));
+        if (residency_) residency_->wish(tile_list_.wishes());
         report_.lod_ms = now_ms() - begin;
     }
 
@@ -315,23 +389,23 @@ class VegetationSystems final : public Vegetation {
         report_.tiles_missing = tile_list_.stand_in_count;
         report_.clouds = uint32_t(tile_list_.clouds().size());
         report_.plants = tile_list_.plant_count;
-        report_.plants_visible = 0;
-        report_.cloud_plants = report_.full_triangles = 0;
+        report_.tiles_hidden = tile_list_.hidden_tile_count;
+        report_.cloud_plants = 0;
+        frame_plants_.count(report_.plants_visible, report_.plants_hidden, report_.full_triangles);
         for (const CloudTile& tile : tile_list_.clouds()) {
             report_.cloud_plants += tile.plant_count;
             report_.full_triangles += tile.triangle_count;
         }
-        for (const ExpandCounts& run : run_counts_) {
-            report_.plants_visible += run.plants_visible;
-            report_.full_triangles += run.full_triangles;
-        }
         report_.triangles = report_.lines = report_.points = 0;
-        for (size_t i = 1; i < run_counts_.size() + 2; ++i) {
+        for (size_t i = 1; i < tile_list_.runs().size() + 2; ++i) {
             report_.triangles += work_.part(i).triangles;
             report_.lines += work_.part(i).lines;
             report_.points += work_.part(i).points;
         }
         report_.vertices = report_.points + 2 * report_.lines + 3 * report_.triangles;
+        slot_counts_[slot_] = {counts_of(report_), true};
+        report_.sample_distance_px = drawn_.sample_distance_px;
+        report_.vertex_budget = budget_;
         report_.scene_triangles = scene_triangles_;
         report_.work_entries = layout_.entry_count;
         report_.dropped_entries = layout_.dropped_entries;
@@ -375,12 +449,22 @@ class VegetationSystems final : public Vegetation {
     dvec3 last_step_m_{0.0};
     vec3 motion_m_{0.0f};
     Frustum frustum_{};
+    Horizon horizon_;
     TileList tile_list_;
     GroundList ground_list_;
+    FramePlants frame_plants_;
+    float listed_px_ = 0.0f;       // d' that the tiles were listed for
+    uint64_t budget_ = 0;          // vertices; 0: none
+    float last_solved_px_ = 1.0f;  // d' of the last frame in which the view moved
+    LearnedCost cost_;
+    struct SlotCounts {
+        PrimitiveCounts counts;
+        bool drawn = false;  // and not learned yet
+    };
+    std::vector<SlotCounts> slot_counts_;
     WorkList work_;
     WorkList::Layout layout_;
     uint32_t refused_entries_ = UINT32_MAX;  // a list this long found no memory
-    std::vector<ExpandCounts> run_counts_;
     FrameReport report_;
 };
 

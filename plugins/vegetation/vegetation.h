@@ -56,6 +56,9 @@ class Vegetation {
     virtual void set_settings(const FrameSettings& settings) = 0;
     // Which of the rings the next frame uses; CommandRing::Frame::slot.
     virtual void set_slot(uint32_t slot) = 0;
+    // How long the frame took that used the slot last: what FrameSettings::time_budget_ms is to hold, be it the device's
+    // time or all. Before the slot's next frame; a frame whose time is not told teaches nothing.
+    virtual void set_frame_ms(uint32_t slot, double ms) = 0;
 
     // RGBA8, sRGB-encoded, width * height, rows from the top; written by the pass "resolve".
     virtual const gpu::Buffer& color() const = 0;

@@ -26,6 +26,8 @@ Examples:
   coppice populate content/scenes/landscape.eco.json -o out/landscape
   coppice play out/landscape
       the same landscape, read while it is flown over
+  coppice play content/scenes/woodland.eco.json --vertices 500000
+      half a million vertices in every frame, d' as large as that takes
   coppice play tree.glb
       any plant, with a grove of it behind, from where it fills the picture to where it is 20 pixels tall)";
 
@@ -111,6 +113,18 @@ void add_play(CLI::App& app, Command& chosen) {
     play->add_option("--sample-distance", command->sample_distance_px,
                      "d' in pixels; smaller draws more. Default: what the scene recommends")
         ->check(CLI::Range(0.01, 1000.0));
+    play->add_option("--vertices", options.settings.vertex_budget,
+                     "Points + 2 lines + 3 triangles of plants a frame may draw: d' grows as far as that takes. 0: any "
+                     "number")
+        ->capture_default_str();
+    play->add_option("--frame-ms", options.settings.time_budget_ms,
+                     "Likewise what a frame may take, by what vertices were learned to cost. 0: any time")
+        ->check(CLI::Range(0.0, 10'000.0))
+        ->capture_default_str();
+    play->add_option("--most-sample-distance", options.settings.most_sample_distance_px,
+                     "--vertices and --frame-ms make d' no larger than this")
+        ->check(CLI::Range(0.01, 1000.0))
+        ->capture_default_str();
     play->add_option("--splat-factor", options.settings.splat_factor,
                      "c_p: points for each square of side d'")
         ->check(CLI::Range(0.01, 100.0))

@@ -15,8 +15,6 @@
 namespace coppice {
 namespace {
 
-constexpr uint32_t k_frame_slots = 2;
-
 Result<uint64_t> hash_file(const std::string& path) {
     COPPICE_TRY(const MappedFile file, MappedFile::open(path));
     return hash_bytes(file.bytes().data(), file.bytes().size());
@@ -216,13 +214,18 @@ Result<std::unique_ptr<PlayHost>> PlayHost::create(const PlayOptions& options,
 
 Result<PlayHost::Frame> PlayHost::begin_frame(const Camera& camera, const FrameSettings& settings) {
     COPPICE_TRY(const gpu::CommandRing::Frame frame, ring.begin());
-    if (read_times) read_times(frame.slot, frame.timestamps->sections());
+    const std::span<const gpu::Timestamps::Section> sections = frame.timestamps->sections();
+    if (read_times) read_times(frame.slot, sections);
+    // Nothing overlapped; draw_frame knows better.
+    double last_ms = schedule_ms_of_slot_[frame.slot];
+    for (const gpu::Timestamps::Section& section : sections) last_ms += section.ms;
+    if (!sections.empty()) vegetation->set_frame_ms(frame.slot, last_ms);
     vegetation->set_slot(frame.slot);
     vegetation->set_camera(camera);
     vegetation->set_settings(settings);
     Stopwatch clock;
     schedule.run();
-    const double schedule_ms = clock.ms();
+    const double schedule_ms = schedule_ms_of_slot_[frame.slot] = clock.ms();
     graph.record(frame.commands, frame.timestamps);
     return Frame{frame, schedule_ms};
 }
@@ -232,7 +235,9 @@ Result<PlayHost::FrameTimes> PlayHost::draw_frame(const Camera& camera, const Fr
     COPPICE_TRY(const Frame frame, begin_frame(camera, settings));
     COPPICE_CHECK(ring.submit());
     COPPICE_CHECK(ring.wait(frame.ring.serial));
-    return FrameTimes{clock.ms(), frame.schedule_ms, frame.ring.slot};
+    const double wall_ms = clock.ms();
+    vegetation->set_frame_ms(frame.ring.slot, wall_ms);
+    return FrameTimes{wall_ms, frame.schedule_ms, frame.ring.slot};
 }
 
 Status PlayHost::finish_times() {

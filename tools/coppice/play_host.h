@@ -1,6 +1,7 @@
 // What any program has that embeds the vegetation plugin: plugins, a scene with its plants, a device, a
 // world, a schedule, a frame graph and a ring of command buffers. One thread at a time.
 #pragma once
+#include <array>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -79,6 +80,8 @@ class PlayHost {
 
   private:
     std::optional<TileForest> forest_;  // of a populated scene, until the vegetation has it
+    static constexpr uint32_t k_frame_slots = 2;
+    std::array<double, k_frame_slots> schedule_ms_of_slot_{};
     PlayHost() = default;
     Status load_plugins();
     Status load_scene_file(const PlayOptions& options);

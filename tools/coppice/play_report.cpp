@@ -52,7 +52,7 @@ std::vector<Figure> play_figures(const PlayRecord& record) {
         {"cull_ms", count([](auto& f) { return f.report.cull_ms; }), "ms", {}},
         {"lod_ms", count([](auto& f) { return f.report.lod_ms; }), "ms", {}},
         {"write_ms", count([](auto& f) { return f.report.write_ms; }), "ms", {}},
-        {"sample_distance_px", record.settings.sample_distance_px, "px", {}},
+        {"sample_distance_px", count([](auto& f) { return f.report.sample_distance_px; }), "px", {}},
         {"splat_factor", record.settings.splat_factor, "", {}},
         {"vertices", count([](auto& f) { return f.report.vertices; }), "per frame", {}},
         {"triangles", count([](auto& f) { return f.report.triangles; }), "per frame", {}},
@@ -112,18 +112,21 @@ std::string frames_csv(const PlayRecord& record) {
     std::string csv = "frame,time_s,wall_ms,schedule_ms,stream_ms,cull_ms,lod_ms,write_ms";
     for (const std::string& pass : record.passes) csv += ",gpu_" + pass + "_ms";
     csv +=
-        ",vertices,triangles,lines,points,terrain_triangles,full_triangles,tiles_touched,clouds,tiles_missing,"
-        "stream_bytes_read,stream_resident_bytes,plants_visible,work_entries,dropped_entries\n";
+        ",sample_distance_px,vertex_budget,vertices,triangles,lines,points,terrain_triangles,full_triangles,"
+        "tiles_touched,clouds,tiles_missing,stream_bytes_read,stream_resident_bytes,plants_visible,tiles_hidden,"
+        "plants_hidden,work_entries,dropped_entries\n";
     for (const FrameRecord& frame : record.frames) {
         const FrameReport& report = frame.report;
         csv += fmt::format("{},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f}", frame.frame, frame.time_s,
                            frame.wall_ms, frame.schedule_ms, report.stream_ms, report.cull_ms, report.lod_ms, report.write_ms);
         for (double ms : frame.pass_ms) csv += fmt::format(",{:.4f}", ms);
-        csv += fmt::format(",{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", report.vertices, report.triangles,
+        csv += fmt::format(",{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
+                           report.sample_distance_px, report.vertex_budget, report.vertices, report.triangles,
                            report.lines, report.points, report.terrain_triangles, report.full_triangles,
                            report.tiles_touched, report.clouds, report.tiles_missing,
                            report.stream_bytes_read, report.stream_resident_bytes, report.plants_visible,
-                           report.work_entries, report.dropped_entries);
+                           report.tiles_hidden, report.plants_hidden, report.work_entries,
+                           report.dropped_entries);
     }
     return csv;
 }
@@ -155,6 +158,9 @@ nlohmann::json play_summary(const PlayRecord& record) {
           {"fps", record.fps},
           {"frames", record.frames.size()},
           {"sample_distance_px", record.settings.sample_distance_px},
+          {"vertex_budget", record.settings.vertex_budget},
+          {"time_budget_ms", record.settings.time_budget_ms},
+          {"most_sample_distance_px", record.settings.most_sample_distance_px},
           {"splat_factor", record.settings.splat_factor},
           {"projection", name_of(record.settings.projection)},
           {"level_of_detail", record.settings.level_of_detail},

@@ -211,6 +211,32 @@ bool Horizon::add_ring(const Terrain& terrain, const Place& place, uint32_t face
     return true;
 }
 
+// False where nothing of the box is there.
+bool Horizon::span_of(const Box& box, uint32_t face, Span& span) const {
+    const ColumnRange seen = seen_[face];
+    const int axis = face < 2 ? 0 : 2, other = 2 - axis;
+    const bool against = face % 2 != 0;
+    span.u_end = against ? -box.min[axis] : box.max[axis];
+    const float v_low = box.min[other], v_high = box.max[other];
+    span.u_begin = std::max({against ? -box.max[axis] : box.min[axis], v_low, -v_high, 0.0f});  // |v| <= u
+    if (seen.first >= seen.end || !(span.u_begin <= span.u_end && span.u_end > 0.0f)) return false;
+    // Infinite where u_begin is 0 and the box goes to that side: then to the face's border.
+    const float low = v_low / (v_low < 0.0f ? span.u_begin : span.u_end);
+    const float high = v_high / (v_high > 0.0f ? span.u_begin : span.u_end);
+    auto column_at = [](float across) {
+        return uint32_t((glm::clamp(across, -1.0f, 1.0f) + 1.0f) * (0.5f * k_columns));
+    };
+    span.first = std::max(column_at(low), seen.first);
+    span.last = std::min(column_at(high), seen.end - 1);
+    return span.first <= span.last;
+}
+
+const float* Horizon::slopes_at(uint32_t face, float u) const {
+    const size_t nearer =
+        size_t(std::upper_bound(rings_m_.begin(), rings_m_.begin() + ring_count_, u) - rings_m_.begin());
+    return nearer > 0 ? &slopes_[((nearer - 1) * 4 + face) * k_columns] : nullptr;
+}
+
 bool Horizon::hidden(const Box& bounds_camera, float spread_px) const {
     if (ring_count_ == 0 || bounds_camera.empty()) return false;
     const vec3 far = glm::max(glm::abs(bounds_camera.min), glm::abs(bounds_camera.max));
@@ -221,34 +247,31 @@ bool Horizon::hidden(const Box& bounds_camera, float spread_px) const {
 
     bool in_view = false;
     for (uint32_t face = 0; face < 4; ++face) {
-        const ColumnRange seen = seen_[face];
-        const int axis = face < 2 ? 0 : 2, other = 2 - axis;
-        const bool against = face % 2 != 0;
-        const float u_end = against ? -box.min[axis] : box.max[axis];
-        const float v_low = box.min[other], v_high = box.max[other];
-        const float u_begin =
-            std::max({against ? -box.max[axis] : box.min[axis], v_low, -v_high, 0.0f});  // |v| <= u
-        if (seen.first >= seen.end || !(u_begin <= u_end && u_end > 0.0f)) continue;
-        // Infinite where u_begin is 0 and the box goes to that side: then to the face's border.
-        const float low = v_low / (v_low < 0.0f ? u_begin : u_end);
-        const float high = v_high / (v_high > 0.0f ? u_begin : u_end);
-        auto column_at = [](float across) {
-            return int32_t(std::floor((glm::clamp(across, -1.0f, 1.0f) + 1.0f) * (0.5f * k_columns)));
-        };
-        const uint32_t first = std::max(uint32_t(column_at(low)), seen.first);
-        const uint32_t last = std::min(uint32_t(column_at(high)), seen.end - 1);
-        if (first > last) continue;
+        Span span;
+        if (!span_of(box, face, span)) continue;
         in_view = true;
-        const size_t nearer = size_t(
-            std::upper_bound(rings_m_.begin(), rings_m_.begin() + ring_count_, u_begin) - rings_m_.begin());
-        if (nearer == 0) return false;
-        const float top = box.max.y;
-        const float slope = top / (top > 0.0f ? u_begin : u_end);
-        const float* horizon = &slopes_[((nearer - 1) * 4 + face) * k_columns];
-        for (uint32_t column = first; column <= last; ++column)
+        const float* horizon = slopes_at(face, span.u_begin);
+        if (!horizon) return false;
+        const float top = box.max.y, slope = top / (top > 0.0f ? span.u_begin : span.u_end);
+        for (uint32_t column = span.first; column <= span.last; ++column)
             if (!(slope < horizon[column])) return false;
     }
     return in_view;
+}
+
+bool Horizon::hides_some(const Box& bounds_camera) const {
+    if (ring_count_ == 0 || bounds_camera.empty() || !is_finite(bounds_camera.min) || !is_finite(bounds_camera.max))
+        return false;
+    for (uint32_t face = 0; face < 4; ++face) {
+        Span span;
+        if (!span_of(bounds_camera, face, span)) continue;
+        // Where it is farthest: there the most ground stands before it.
+        const float* horizon = slopes_at(face, span.u_end);
+        const float slope = bounds_camera.min.y / span.u_end;
+        for (uint32_t column = span.first; horizon && column <= span.last; ++column)
+            if (slope < horizon[column]) return true;
+    }
+    return false;
 }
 
 }  // namespace coppice

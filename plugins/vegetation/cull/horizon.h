@@ -34,6 +34,9 @@ class Horizon {
     // their geometry its primitives cover pixels, along an axis of the picture. Any thread.
     bool hidden(const Box& bounds_camera, float spread_px) const;
 
+    // Whether it pays to ask for pieces of the box: false where hardly anything of it is hidden. Any thread.
+    bool hides_some(const Box& bounds_camera) const;
+
     // Whether anything can be hidden at all.
     bool empty() const { return ring_count_ == 0; }
 
@@ -44,6 +47,14 @@ class Horizon {
         uint32_t first = 0, end = 0;
     };
 
+    // What of a box lies on a face, in view: columns [first, last], u in [begin, end].
+    struct Span {
+        uint32_t first, last;
+        float u_begin, u_end;
+    };
+    bool span_of(const Box& box, uint32_t face, Span& span) const;
+    // Of the last ring up to u; nullptr: none.
+    const float* slopes_at(uint32_t face, float u) const;
     bool choose_levels(const Terrain& terrain, const Place& place, const Frustum& frustum, float error_px);
     void see_columns(const Frustum& frustum);
     bool add_ring(const Terrain& terrain, const Place& place, uint32_t face, float ring, float* slopes);

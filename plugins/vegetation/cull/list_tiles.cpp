@@ -36,6 +36,8 @@ TileList::SeenTile TileList::see(const Tile& tile, const Pending& at, const Frus
         seen.outside = visibility == Visibility::outside;
         seen.inside = visibility == Visibility::inside;
     }
+    seen.hidden =
+        !seen.outside && settings.horizon && settings.horizon->hidden(seen.bounds_camera, settings.spread_px);
     seen.nearest_m = distance_m(seen.bounds_camera, vec3(0.0f));
     const vec3 center = seen.bounds_camera.center();
     // What is nearest asks for most.
@@ -59,9 +61,9 @@ bool TileList::all_children_drawable(const TileLevels& levels, const Pending& at
         Pending child = at;
         child.row = levels.first_child + i;
         child = arrive(child);
-        if (levels_of_row_[child.row].cloud == TileLevels::k_none &&
-            !see(tile_of_row_[child.row], child, frustum, settings).outside)
-            return false;
+        if (levels_of_row_[child.row].cloud != TileLevels::k_none) continue;
+        const SeenTile seen = see(tile_of_row_[child.row], child, frustum, settings);
+        if (!seen.outside && !seen.hidden) return false;
     }
     return true;
 }
@@ -72,7 +74,8 @@ void TileList::visit(Pending at, const Frustum& frustum, const Settings& setting
     const Tile& tile = tile_of_row_[at.row];
     const TileLevels& levels = levels_of_row_[at.row];
     const SeenTile seen = see(tile, at, frustum, settings);
-    if (seen.outside) return;
+    hidden_tile_count += seen.hidden;
+    if (seen.outside || seen.hidden) return;
     if (levels.is_streamed) wishes_.push_back({at.row, TileBlockKind::cloud, seen.priority});
 
     const bool suffices = seen.density <= levels.finest_density;
@@ -81,7 +84,8 @@ void TileList::visit(Pending at, const Frustum& frustum, const Settings& setting
     if (refines_soon && levels.child_count == 0) {
         if (levels.is_streamed) wishes_.push_back({at.row, TileBlockKind::plants, seen.priority});
         refined = at.drawn && !suffices && !plants_of_row_[at.row].positions.empty();
-        if (refined) expanded_.push_back({seen.nearest_m, at.row, seen.inside, seen.origin_camera});
+        if (refined) expanded_.push_back({seen.nearest_m, at.row, seen.inside, seen.origin_camera,
+                                 settings.horizon && settings.horizon->hides_some(seen.bounds_camera)});
     } else if (refines_soon) {
         refined = at.drawn && !suffices && all_children_drawable(levels, at, frustum, settings);
         // All that is missing on the way down is wished for at once.
@@ -110,7 +114,7 @@ void TileList::list(const Tiles& tiles, const Plants& plants, const Frustum& fru
     clouds_.clear();
     expanded_.clear();
     wishes_.clear();
-    tile_count = expanded_tile_count = touched_tile_count = stand_in_count = 0;
+    tile_count = expanded_tile_count = touched_tile_count = hidden_tile_count = stand_in_count = 0;
     plant_count = 0;
     tile_of_row_ = {};
     tiles.each_chunk(
@@ -150,7 +154,8 @@ void TileList::make_runs() {
         for (size_t first = 0; first < of.positions.size(); first += k_plants_a_run) {
             const size_t count = std::min<size_t>(k_plants_a_run, of.positions.size() - first);
             runs_.push_back({tile.origin_camera, tile.inside, of.positions.subspan(first, count),
-                             of.turns.subspan(first, count), of.models.subspan(first, count)});
+                             of.turns.subspan(first, count), of.models.subspan(first, count),
+                             tile.may_be_hidden});
         }
     }
 }

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 #include "plugins/vegetation/cull/frustum.h"
+#include "plugins/vegetation/cull/horizon.h"
 #include "plugins/vegetation/eco/tile_pack.h"
 #include "runtime/ecs/query.h"
 
@@ -16,6 +17,7 @@ struct PlantRun {
     std::span<const PlantPosition> positions;
     std::span<const PlantTurn> turns;
     std::span<const PlantModel> models;
+    bool may_be_hidden = false;  // some of its plants may be behind the ground
 };
 
 // A tile that its cloud stands for.
@@ -47,6 +49,8 @@ class TileList {
         float sample_distance_px;  // d'; 0: no clouds, plants everywhere
         // Where the viewer will be soon, from where it is now: what it needs there is wished for already.
         vec3 motion_m{0.0f};
+        const Horizon* horizon = nullptr;  // what it hides is left out, and not wished for
+        float spread_px = 0.0f;            // how far beside their geometry primitives cover pixels
     };
     // Order: by distance of the tile's bounds, then by row. Requires a finite camera.
     void list(const Tiles& tiles, const Plants& plants, const Frustum& frustum, dvec3 camera_world,
@@ -61,6 +65,7 @@ class TileList {
     uint64_t plant_count = 0;         // of all places
     uint32_t touched_tile_count = 0;  // looked at on the way down
     uint32_t stand_in_count = 0;      // clouds that stand for what is not in memory yet
+    uint32_t hidden_tile_count = 0;   // in view but behind the horizon, with all below them
 
   private:
     struct TilePlants {
@@ -73,6 +78,7 @@ class TileList {
         uint32_t row;
         bool inside;
         vec3 origin_camera;
+        bool may_be_hidden;
     };
     struct Pending {
         uint32_t row;
@@ -87,7 +93,7 @@ class TileList {
         float nearest_m;
         float density, density_soon;  // that its nearest place asks for, now and where the viewer will be
         float priority;
-        bool outside, inside;
+        bool outside, inside, hidden;
     };
     SeenTile see(const Tile& tile, const Pending& at, const Frustum& frustum, const Settings& settings) const;
     // Follows places down to what stands there.

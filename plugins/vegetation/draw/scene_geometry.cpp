@@ -1,5 +1,6 @@
 #include "plugins/vegetation/draw/scene_geometry.h"
 
+#include <algorithm>
 #include <bit>
 #include "plugins/vegetation/plant/direction_form.h"
 
@@ -69,6 +70,11 @@ Result<SceneGeometry> gather_geometry(const GeometrySource& source) {
             model.center_plant = plant.bounds_plant.center();
             model.radius_m = 0.5f * glm::length(plant.bounds_plant.size());
         }
+        constexpr float k_slack = 1.001f;  // rounding
+        model.foot_radius_m = k_slack * (glm::length(model.center_plant) + model.radius_m);
+        for (size_t line_end = 1; line_end < plant.line_vertices.size(); line_end += 2)
+            geometry.most_line_width =
+                std::max(geometry.most_line_width, std::bit_cast<float>(plant.line_vertices[line_end].surface));
         model.first_part = uint32_t(geometry.parts.size());
         model.part_count = uint32_t(plant.parts.size());
         uint32_t first_triangle_vertex = append(plant.triangle_vertices);
@@ -78,6 +84,7 @@ Result<SceneGeometry> gather_geometry(const GeometrySource& source) {
         geometry.owners.insert(geometry.owners.end(), plant.point_owners.begin(), plant.point_owners.end());
         auto add_part = [&](PackedPart part) {
             part.importance *= i < source.models.size() ? source.models[i].importance : 1.0f;
+            geometry.least_importance = std::min(geometry.least_importance, part.importance);
             geometry.part_geometry.push_back(
                 {first_triangle_vertex + part.first_triangle * 3, first_point + part.first_point,
                  first_line_vertex + part.first_line * 2, first_owner + part.first_point,

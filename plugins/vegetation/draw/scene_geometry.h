@@ -12,7 +12,8 @@ namespace coppice {
 
 struct DrawModel {
     vec3 center_plant;
-    float radius_m;  // of the sphere around center_plant that holds the plant
+    float radius_m;       // of the sphere around center_plant that holds the plant
+    float foot_radius_m;  // likewise around its foot
     uint32_t first_part, part_count;
     uint64_t triangle_count;
     bool has_cells;  // in any of its parts
@@ -53,6 +54,8 @@ struct SceneGeometry {
     std::vector<PartGeometry> part_geometry;
     std::vector<PartCells> part_cells;
     std::vector<PartSphere> part_spheres;
+    // For widest_spread_px.
+    float least_importance = 1.0f, most_line_width = 1.0f;
     // Until uploaded.
     std::vector<PackedVertex> vertices;
     std::vector<uint32_t> owners;

@@ -37,7 +37,7 @@ struct WorkInstance {
     float unused[4];
 };
 static_assert(sizeof(WorkInstance) == 64);
-WorkInstance instance_of(const mat3& rotation, float scale, vec3 position);
+WorkInstance instance_of(const mat3& rotation, float scale, vec3 position_camera);
 
 inline constexpr uint32_t k_primitives_a_group = 256;  // larger runs are cut, so that groups are alike
 inline constexpr uint32_t k_primitives_a_lane = 32;    // runs up to this long are drawn by a single lane

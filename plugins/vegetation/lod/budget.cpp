@@ -30,6 +30,24 @@ float choose_in_bin(float finer_px2, float coarser_px2, double finer, double coa
 
 }  // namespace
 
+// V at an edge of a bin: what reaches its last level there or coarser draws that; the rest draws by d'.
+struct BudgetSums {
+    using H = BudgetHistogram;
+    double per_area = 0.0, per_length = 0.0;  // of the rest
+    uint64_t most = 0;                        // of what is at its last level
+    void pass(const H::Bin& bin, int exponent) {
+        per_area += double(int64_t(bin.per_area)) * double(H::power_of_two(exponent));
+        per_length += double(int64_t(bin.per_length)) * double(H::power_of_two(H::halve(exponent)));
+        most -= bin.most;
+    }
+    double vertices_at(double px2) const {
+        return (double(int64_t(most)) + per_area / px2 + per_length / std::sqrt(px2)) / double(H::k_quanta);
+    }
+    static float edge_px2(uint32_t bin) {
+        return std::bit_cast<float>((H::k_first_key - 1 + int(bin)) << (23 - H::k_bin_bits));
+    }
+};
+
 void BudgetHistogram::add(const BudgetHistogram& other) {
     for (size_t i = 0; i < bins_.size(); ++i) {
         bins_[i].most += other.bins_[i].most;
@@ -41,6 +59,8 @@ void BudgetHistogram::add(const BudgetHistogram& other) {
 float solve_sample_distance(const BudgetHistogram& histogram, uint64_t fixed_vertices,
                             uint64_t budget_vertices, float least_px, float most_px) {
     using H = BudgetHistogram;
+    using Sums = BudgetSums;
+    constexpr auto px2_of = &BudgetSums::edge_px2;
     const float least = least_px > k_finest_sample_distance_px
                             ? std::min(least_px, k_coarsest_sample_distance_px)
                             : k_finest_sample_distance_px;
@@ -48,24 +68,6 @@ float solve_sample_distance(const BudgetHistogram& histogram, uint64_t fixed_ver
         most_px < k_coarsest_sample_distance_px ? std::max(most_px, least) : k_coarsest_sample_distance_px;
     if (budget_vertices == 0) return most;
     const double budget = double(budget_vertices);
-
-    // V at an edge: what reaches its last level there or coarser draws that; the rest draws by d'.
-    struct Sums {
-        double per_area = 0.0, per_length = 0.0;  // of the rest
-        uint64_t most = 0;                        // of what is at its last level
-        void pass(const H::Bin& bin, int exponent) {
-            per_area += double(int64_t(bin.per_area)) * double(H::power_of_two(exponent));
-            per_length += double(int64_t(bin.per_length)) * double(H::power_of_two(H::halve(exponent)));
-            most -= bin.most;
-        }
-        double vertices_at(double px2) const {
-            return (double(int64_t(most)) + per_area / px2 + per_length / std::sqrt(px2)) /
-                   double(H::k_quanta);
-        }
-    };
-    auto px2_of = [](uint32_t bin) {
-        return std::bit_cast<float>((H::k_first_key - 1 + int(bin)) << (23 - H::k_bin_bits));
-    };
 
     // Bins of an octave share their units, so it is added up in integers first, and only the octave in which V crosses
     // the budget bin by bin.
@@ -121,15 +123,25 @@ float solve_sample_distance(const BudgetHistogram& histogram, uint64_t fixed_ver
                       least, most);
 }
 
-void add_part(BudgetHistogram& histogram, const PackedPart& part, const PlantView& view,
+double vertices_at(const BudgetHistogram& histogram, float sample_distance_px) {
+    using H = BudgetHistogram;
+    const float px2 = sample_distance_px * sample_distance_px;
+    BudgetSums sums;
+    for (const H::Bin& bin : histogram.bins_) sums.most += bin.most;
+    for (uint32_t bin = 0; bin + 1 < H::k_bin_count && BudgetSums::edge_px2(bin) <= px2; ++bin)
+        sums.pass(histogram.bins_[bin], H::exponent_of(H::k_first_key - 1 + int(bin)));
+    return sums.vertices_at(double(px2));
+}
+
+void add_part(BudgetHistogram& histogram, const PackedPart& part, const PartProjection& projected,
               const FrameSettings& settings) {
     const float all = 3.0f * float(part.triangle_count);
     if (!settings.level_of_detail) return histogram.add_always(all);
-    float area_px2 = projected_area_px2(part, view, settings.projection);
+    float area_px2 = projected.area_px2;
     if (part.triangle_count == 0 || !(area_px2 > 0.0f)) return;
     const bool measured = settings.projection == ProjectionMode::measured;
-    const float d = std::max(settings.sample_distance_px, 1.0e-3f);
     if (part.kind == PackedPartKind::points) {
+        const float d = std::max(settings.sample_distance_px, 1.0e-3f);
         const float stored = float(part.point_count);
         if (part.point_count == 0) return histogram.add_always(all);
         if (measured) area_px2 *= gain_at(part, area_px2 / (stored * d * d));
@@ -137,12 +149,18 @@ void add_part(BudgetHistogram& histogram, const PackedPart& part, const PlantVie
         if (settings.blend) return histogram.add_points(wanted, stored, all);
         return histogram.add_switching_points(wanted, stored, all);
     }
-    const float length_px = projected_length_px(part, view, settings.projection);
+    const float length_px = projected.length_px;
     if (part.line_count == 0 || !(length_px > 0.0f)) return histogram.add_always(all);
+    const bool held = settings.line_sample_distance_px > 0.0f;
+    const float d = std::max(held ? settings.line_sample_distance_px : settings.sample_distance_px, 1.0e-3f);
     if (measured) area_px2 *= gain_at(part, area_px2 / (length_px * d));
     const float all_lines_px = part.importance * area_px2 / length_px;  // the d' of q = 1
+    if (held) {
+        const bool triangles = d < all_lines_px || d <= part.line_error_m * projected.pixels_per_meter;
+        return histogram.add_always(triangles ? all : 2.0f * float(part.line_count) * all_lines_px / d);
+    }
     histogram.add_lines(2.0f * float(part.line_count) * all_lines_px,
-                        std::max(all_lines_px, part.line_error_m * view.pixels_per_meter), all);
+                        std::max(all_lines_px, part.line_error_m * projected.pixels_per_meter), all);
 }
 
 void add_cloud(BudgetHistogram& histogram, const PackedPart& cloud, std::span<const float> densities,

@@ -66,6 +66,8 @@ class BudgetHistogram {
 
   private:
     friend float solve_sample_distance(const BudgetHistogram&, uint64_t, uint64_t, float, float);
+    friend double vertices_at(const BudgetHistogram&, float);
+    friend struct BudgetSums;
 
     // Bins are of d'^2, since that needs no root: 256 for each power of two, read from the float's bits. One before and
     // one after for what lies outside. Within a bin d'^2 grows by 1/256 at most.
@@ -123,25 +125,34 @@ class BudgetHistogram {
 float solve_sample_distance(const BudgetHistogram& histogram, uint64_t fixed_vertices,
                             uint64_t budget_vertices, float least_px, float most_px);
 
+// V(d') without what jumps or bends within 0.2 % below d', so that what is solved at the coarser side of a jump is told
+// apart from what meets its budget. Does not allocate.
+double vertices_at(const BudgetHistogram& histogram, float sample_distance_px);
+
 // What choose_part will draw, in the mean over chance. Coverage gains change with d' by a tenth or two an octave; they are
 // taken at settings.sample_distance_px, so solve again where the d' found is far from that: settle_sample_distance.
-void add_part(BudgetHistogram& histogram, const PackedPart& part, const PlantView& view,
+void add_part(BudgetHistogram& histogram, const PackedPart& part, const PartProjection& projected,
               const FrameSettings& settings);
+inline void add_part(BudgetHistogram& histogram, const PackedPart& part, const PlantView& view,
+                     const FrameSettings& settings) {
+    add_part(histogram, part, project_part(part, view, settings.projection), settings);
+}
 // What choose_cloud will draw, to 1 %: its points over their density by straight lines between counts a factor of 0.7
 // apart.
 void add_cloud(BudgetHistogram& histogram, const PackedPart& cloud, std::span<const float> densities,
                float mean_area_m2, const PlantView& view, const FrameSettings& settings);
 
+inline constexpr float k_settled_sample_distance = 0.01f;
+
 // The d' that finds itself: solve_at(d') fills a histogram with the gains at d' and solves it. One pass where guess_px > 0,
 // the last frame's, is within 1 % of it, which leaves the count 0.4 % off where gains change by 15 % an octave; after a
-// camera cut three or four, by secants.
+// camera cut three or four, by secants, and more only where solve_at jumps.
 template <class SolveAt>
 float settle_sample_distance(float guess_px, SolveAt&& solve_at) {
-    constexpr int k_most_passes = 4;
-    constexpr float k_settled = 0.01f;
+    constexpr int k_most_passes = 8;
     float at_px = guess_px, found_px = solve_at(at_px);
     float slope = -0.15f;  // of found by at, while unknown: what 10 % of gain an octave give
-    for (int pass = 1; pass < k_most_passes && std::fabs(found_px - at_px) > k_settled * at_px; ++pass) {
+    for (int pass = 1; pass < k_most_passes && std::fabs(found_px - at_px) > k_settled_sample_distance * at_px; ++pass) {
         const float last_at_px = at_px, last_found_px = found_px;
         at_px = std::clamp(at_px + (found_px - at_px) / (1.0f - slope), 0.5f * found_px, 2.0f * found_px);
         found_px = solve_at(at_px);

@@ -49,8 +49,20 @@ PartChoice choose_cloud(const PackedPart& cloud, std::span<const float> densitie
                         const PlantView& view, float depth_m, float nearest_pixels_per_meter,
                         const FrameSettings& settings);
 
-// The whole decision for one part.
-PartChoice choose_part(const PackedPart& part, const PlantView& view, const FrameSettings& settings,
+// The whole decision for one part; projected by settings.projection.
+PartChoice choose_part(const PackedPart& part, const PartProjection& projected, const FrameSettings& settings,
                        float chance);
+inline PartChoice choose_part(const PackedPart& part, const PlantView& view, const FrameSettings& settings,
+                              float chance) {
+    return choose_part(part, project_part(part, view, settings.projection), settings, chance);
+}
+
+// Whether the part's points or lines do not suffice, so that choose_part draws triangles. Not of one without levels of
+// detail.
+bool draws_triangles(const PackedPart& part, const PartProjection& projected, const FrameSettings& settings);
+
+// How far beside their geometry points and lines cover pixels at most, along an axis of the picture.
+// least_importance: of all parts; most_line_width: of all lines, over their part's mean.
+float widest_spread_px(float least_importance, float most_line_width, const FrameSettings& settings);
 
 }  // namespace coppice

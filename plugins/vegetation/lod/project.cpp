@@ -17,4 +17,9 @@ float projected_length_px(const PackedPart& part, const PlantView& view, Project
     return share * part.line_length_m * view.pixels_per_meter;
 }
 
+PartProjection project_part(const PackedPart& part, const PlantView& view, ProjectionMode mode) {
+    return {view.pixels_per_meter, projected_area_px2(part, view, mode),
+            part.kind == PackedPartKind::lines ? projected_length_px(part, view, mode) : 0.0f};
+}
+
 }  // namespace coppice

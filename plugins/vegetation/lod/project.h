@@ -22,9 +22,18 @@ inline float pixels_per_meter(float focal_px, float distance_m, float radius_m, 
     return focal_px / (r > r_min_m ? r : r_min_m) * scale;
 }
 
+// What a part would cover, whatever d'.
+struct PartProjection {
+    float pixels_per_meter = 0.0f;
+    float area_px2 = 0.0f;   // A'_p
+    float length_px = 0.0f;  // l'; only of lines
+};
+
 // A'_p in square pixels: what the part would cover if none of it hid another piece of it.
 float projected_area_px2(const PackedPart& part, const PlantView& view, ProjectionMode mode);
 // l' in pixels: length of all its lines.
 float projected_length_px(const PackedPart& part, const PlantView& view, ProjectionMode mode);
+// Both, as the part's kind needs them.
+PartProjection project_part(const PackedPart& part, const PlantView& view, ProjectionMode mode);
 
 }  // namespace coppice

@@ -18,12 +18,23 @@ enum class RepresentationView : uint8_t {
 };
 
 struct FrameSettings {
-    float sample_distance_px = 1.0f;  // d'; > 0. Smaller: more primitives
+    // d'; > 0. Smaller: more primitives. With a budget the least d': where all that it asks for fits, no more is drawn.
+    float sample_distance_px = 1.0f;
+    // Of lines alone; 0: that of points. A budget sets it where lines become triangles all at once: at the d' at which they
+    // still fit, and what is left goes to points.
+    float line_sample_distance_px = 0.0f;
+    // Points + 2 lines + 3 triangles that the plants of a frame may draw; 0: as many as d' asks for. d' is found in each
+    // frame so that it is met. Not of a view at rest, nor without levels of detail.
+    uint64_t vertex_budget = 0;
+    // Likewise, in time: as many vertices as were learned to take that long. 0: none; of both budgets the smaller holds.
+    float time_budget_ms = 0.0f;
+    float most_sample_distance_px = 16.0f;  // budgets make d' no larger; the picture's quality goes before them
     float splat_factor = 1.0f;        // c_p; the paper says 1.2 to 1.5 (docs/decisions.md)
     ProjectionMode projection = ProjectionMode::measured;
     bool weigh_by_facing = true;  // splats by |n . v|, as leaves are seen; false: all alike, as printed
     bool level_of_detail = true;  // false: every triangle of everything in view
     bool blend = true;            // false: switch from points to triangles at once
+    bool occlusion = true;        // false: what is behind the ground is drawn as well; the picture is the same
     RepresentationView view = RepresentationView::lit;
     // Each pixel shows its sample and its neighbours' under a tent of this radius, [1, 2] px; 1: its own alone. Leaves
     // are finer than pixels, and a sample of one point a pixel is far from the pixel's mean.

@@ -77,8 +77,8 @@ class MosaicReader {
         if (!add_product(node.scene_count, placed.copy_count(), below.scene_count))
             return fail(ErrorId::limit_exceeded, node.path, placed.place, "more than 2^64 scenes in all",
                         "fewer places");
-        for (uint64_t copy : {uint64_t(0), placed.copy_count() - 1})
-            node.reach_m = std::max(node.reach_m, glm::length(placed.origin_of(copy)) + below.reach_m);
+        const double grid_m = glm::length(placed.origin_of(0) - placed.at);  // to each of its corners
+        node.reach_m = std::max(node.reach_m, glm::length(placed.at) + grid_m + below.reach_m);
         if (node.reach_m > k_origin_reach_m)
             return fail(ErrorId::value_out_of_range, node.path, placed.place,
                         fmt::format("reaches {:.3g} m from the origin", node.reach_m),

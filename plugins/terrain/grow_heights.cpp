@@ -1,6 +1,5 @@
 #include "plugins/terrain/grow_heights.h"
 
-#include <algorithm>
 #include "plugins/terrain/build_patches.h"
 #include "plugins/shared/noise.h"
 #include "runtime/core/jobs.h"
@@ -20,7 +19,9 @@ float natural_height(const GrowHeightsSettings& s, const Region& valley, double 
     float trough = 0.0f;
     if (!valley.shapes.empty())
         trough = 1.0f - smooth_step(0.0f, s.valley_width_m * 0.5f, float(valley.distance_m(dvec2(x, z))));
-    float border = float(std::max(std::abs(x), std::abs(z)) / (0.5 * double(s.size_m)));
+    // Between the square's distance and the circle's: the rim has no crease along the diagonals.
+    double x2 = x * x, z2 = z * z;
+    float border = float(std::sqrt(std::sqrt(x2 * x2 + z2 * z2)) / (0.5 * double(s.size_m)));
     return s.amplitude_m * hills * 2.0f * (1.0f - 0.75f * trough) - s.valley_depth_m * trough +
            s.rim_m * smooth_step(0.35f, 1.0f, border);
 }

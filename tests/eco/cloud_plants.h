@@ -32,6 +32,7 @@ class HandPlant {
         part.first_line = uint32_t(lines_.size() / 2);
         part.line_count = uint32_t(widths.size());
         const float length_m = 0.1f * float(widths.size());
+        part.line_length_m = length_m / (0.25f * k_pi);
         part.projected_length_m.m = {length_m * length_m, length_m * length_m, length_m * length_m, 0, 0, 0};
         for (uint32_t i = 0; i < widths.size(); ++i) {
             const float step_m = 1.0f / float(widths.size()), y = step_m * float(i);

@@ -58,6 +58,7 @@ std::vector<HandPlant> random_plants(uint32_t points, uint64_t seed) {
             PackedPart& part =
                 plants[m].add_points(uint32_t(share * float(points)), share * 2.0f, p * 100000);
             roughen_gains(part, random);
+            part.importance = random.next_in(0.7f, 3.0f);
             for (float& channel : part.mean_color_linear) channel = random.next_unit();
         }
     return plants;
@@ -72,12 +73,6 @@ std::vector<Plant> views_of(const std::vector<HandPlant>& plants) {
 size_t prefix_of(const TileCloud& cloud, float density) {
     return size_t(std::upper_bound(cloud.densities.begin(), cloud.densities.end(), density) -
                   cloud.densities.begin());
-}
-
-// How many points the cloud is drawn with (lod/choose_part.cpp, choose_cloud) in the mean over directions.
-double asked_of(const TileCloud& cloud, double density) {
-    const double area_px2 = mean_over_directions(cloud.part.projected_area_m2) * density;
-    return area_px2 * double(gain_at(cloud.part, float(area_px2 / double(cloud.part.point_count))));
 }
 
 void expect_sound(const TileCloud& cloud) {
@@ -102,7 +97,6 @@ uint64_t hash_of(const TileCloud& cloud) {
     uint64_t hash = hash_bytes(cloud.points.data(), cloud.points.size() * sizeof(PackedVertex));
     hash = hash_span(std::span<const float>(cloud.densities), hash);
     hash = hash_span(std::span<const float>(cloud.exhausted_area_m2), hash);
-    hash = hash_span(std::span<const float>(cloud.part.coverage_gain), hash);
     return hash_span(std::span<const float>(cloud.part.projected_area_m2.m), hash);
 }
 
@@ -150,12 +144,45 @@ TEST(GatherCloud, PrefixesAreWhatThePlantsDraw) {
 
 TEST(GatherCloud, IsDrawnWithAsManyPointsAsThePlants) {
     const std::vector<HandPlant> hand = random_plants(1500, 21);
+    const std::vector<Plant> plants = views_of(hand);
     const Stand stand = random_stand(60, 3, 22);
-    const TileCloud cloud = stand.gather(views_of(hand));
+    const TileCloud cloud = stand.gather(plants);
     for (float density = cloud.finest_density() * 1e-3f; density <= cloud.finest_density(); density *= 1.3f) {
+        double asked = 0.0;
+        for (size_t i = 0; i < stand.size(); ++i)
+            for (const PackedPart& part : plants[stand.models[i].model].parts)
+                asked += PointDemand(part).count(double(density) * double(stand.positions[i].scale) *
+                                                 double(stand.positions[i].scale));
         const double count = double(prefix_of(cloud, density));
-        EXPECT_NEAR(asked_of(cloud, double(density)), count, 0.012 * count + 10.0) << density;
+        EXPECT_NEAR(asked, count, 0.012 * count + 10.0) << density;
     }
+}
+
+float area_share_of(float density) {
+    return portable_exp2((float(std::bit_cast<uint32_t>(density) & 0xffu) - 128.0f) / 16.0f);
+}
+
+// More points, each as much smaller: what they cover stays.
+TEST(GatherCloud, ImportanceAddsSmallerPointsNotArea) {
+    std::vector<HandPlant> hand(2);
+    for (HandPlant& plant : hand) plant.add_points(2000, 1.0f);
+    hand[1].parts()[0].importance = 1.5f;
+    const std::vector<Plant> plants = views_of(hand);
+    Stand stand;
+    stand.add(0.0f, 0, 1.0f);
+    stand.add(k_apart_m, 1, 1.0f);
+    const SceneModel models[] = {{}, {"important", "", 0, 2.0f}};
+    const TileCloud cloud = gather_cloud(stand.positions, stand.turns, stand.models, plants, models);
+    double count[2] = {}, area_px2[2] = {};
+    for (size_t i = 0; i < prefix_of(cloud, 400.0f); ++i) {
+        const int plant = cloud.points[i].x_plant > 0.5f * k_apart_m;
+        ++count[plant];
+        area_px2[plant] += double(area_share_of(cloud.densities[i]));
+    }
+    EXPECT_NEAR(count[0], 400.0, 1.0);
+    EXPECT_NEAR(count[1], 1200.0, 1.0) << "the part's importance times the scene's";
+    EXPECT_NEAR(area_px2[0], 400.0, 1.0);
+    EXPECT_NEAR(area_px2[1], 400.0, 0.025 * 400.0);
 }
 
 TEST(GatherCloud, KeepsAreaColourAndFacing) {
@@ -234,23 +261,23 @@ TEST(GatherCloud, IsCutWhereItIsFull) {
     EXPECT_NEAR(asked, double(k_cloud_points), 0.01 * k_cloud_points);
 }
 
-TEST(GatherCloud, LinesGivePointsAlongThemByWidth) {
+TEST(GatherCloud, LinesGiveThePointsThatStandForThem) {
     std::vector<HandPlant> hand(1);
-    hand[0].add_lines({3.0f, 0.5f, 0.5f, 1.0f}, 0.2f);
+    const std::vector<float> widths{2.5f, 0.25f, 0.25f, 1.0f};
+    hand[0].add_lines(widths, 0.2f);
+    const Plant plant = hand[0].view();
     Stand stand;
     stand.add(0.0f, 0, 1.0f);
-    const TileCloud cloud = stand.gather(views_of(hand));
-    ASSERT_EQ(cloud.points.size(), 5u);
+    const TileCloud cloud = stand.gather({&plant, 1});
+    ASSERT_EQ(cloud.points.size(), line_point_count(plant.parts[0]));
     const float chance = part_chance(stand.models[0], 0);
-    for (uint32_t i = 0; i < 5; ++i) {
-        const float asked = float(i) + 1.0f - chance;
-        const uint32_t line = asked <= 3.0f ? 0 : asked <= 3.5f ? 1 : asked <= 4.0f ? 2 : 3;
-        EXPECT_EQ(item_of(cloud.points[i]), line);
-        const float before = line == 0 ? 0.0f : 2.5f + 0.5f * float(line), width = line == 0   ? 3.0f
-                                                                                   : line == 3 ? 1.0f
-                                                                                               : 0.5f;
-        EXPECT_NEAR(cloud.points[i].y_plant, 0.25f * (float(line) + (asked - before) / width), 1e-5f);
-        EXPECT_NEAR(PointDemand(hand[0].parts()[0]).count(double(cloud.densities[i])), double(asked), 1e-4);
+    for (uint32_t i = 0; i < cloud.points.size(); ++i) {
+        const LinePoint point = line_point(plant.parts[0], plant.line_vertices, i);
+        EXPECT_EQ(item_of(cloud.points[i]), i % 4);
+        EXPECT_EQ(cloud.points[i].y_plant, point.vertex.y_plant);
+        EXPECT_NEAR(area_share_of(cloud.densities[i]), widths[i % 4], 0.03f * widths[i % 4]);
+        const double asked = double(i) + 1.0 - double(chance);
+        EXPECT_NEAR(PointDemand(plant.parts[0]).count(double(cloud.densities[i])), asked, 2e-5 * asked);
     }
 }
 
@@ -275,10 +302,10 @@ TEST(GatherCloud, GivesTheSameBytesWithEveryCompiler) {
     const std::vector<HandPlant> hand = random_plants(700, 71);
     const TileCloud one = random_stand(20, 3, 72).gather(views_of(hand)),
                     other = random_stand(20, 3, 73).gather(views_of(hand));
-    EXPECT_EQ(hash_to_hex(hash_of(one)), "7728e5199c6b9a23");
+    EXPECT_EQ(hash_to_hex(hash_of(one)), "79f323db464473c1");
     const TileCloud* children[] = {&one, &other};
     const vec3 offsets[] = {vec3(0), vec3(0.5f, -2000.0f, 3.0f)};
-    EXPECT_EQ(hash_to_hex(hash_of(merge_clouds(children, offsets))), "97eefe01e589d79c");
+    EXPECT_EQ(hash_to_hex(hash_of(merge_clouds(children, offsets))), "5ed2523e465dd333");
 }
 
 TEST(GatherCloud, OfNothingIsEmpty) {
@@ -367,8 +394,6 @@ void expect_merged_is_gathered(const std::vector<HandPlant>& hand, uint32_t plan
                     0.01f * b.projected_area_m2.evaluate(d));
     for (int c = 0; c < 3; ++c)
         EXPECT_NEAR(a.mean_color_linear[c], b.mean_color_linear[c], 0.01f * b.mean_color_linear[c]);
-    for (size_t level = 0; level < k_gain_levels; ++level)
-        EXPECT_NEAR(a.coverage_gain[level], b.coverage_gain[level], 0.01f * b.coverage_gain[level]) << level;
 }
 
 TEST(MergeClouds, GivesWhatGatheringAllTheirPlantsGives) {

@@ -27,24 +27,32 @@ TEST(PointDemand, IsWhatAPartDraws) {
     }
 }
 
+// Far away as many points; nearer, lines that cover as much as they would.
 TEST(PointDemand, OfLinesIsTheAreaTheyCover) {
     Random random(2);
+    bool points = false, lines = false;
     for (int round = 0; round < 40; ++round) {
         HandPlant plant;
         const std::vector<float> widths(5000, 1.0f);
         PackedPart& part = plant.add_lines(widths, random.next_in(0.1f, 3.0f));
         roughen_gains(part, random);
         const PointDemand demand(part);
-        for (float per_meter = 0.5f;; per_meter *= 1.3f) {
+        for (float per_meter = 0.05f;; per_meter *= 1.3f) {
             const PlantView view{k_any_side, per_meter};
             const PartChoice drawn = choose_part(part, view, {}, 0.5f);
             if (drawn.triangles > 0) break;
+            const double asked = demand.count(double(per_meter) * double(per_meter));
+            if (drawn.lines == 0) {
+                ASSERT_NEAR(double(drawn.points), asked, 0.501 + 1e-4 * asked) << per_meter;
+                points |= drawn.points > 0;
+                continue;
+            }
             const double of_one = double(projected_length_px(part, view, ProjectionMode::measured)) / 5000.0;
-            ASSERT_NEAR(double(drawn.lines) * of_one, demand.count(double(per_meter) * double(per_meter)),
-                        of_one)
-                << per_meter;
+            ASSERT_NEAR(double(drawn.lines) * of_one, asked, of_one + 1e-4 * asked) << per_meter;
+            lines = true;
         }
     }
+    EXPECT_TRUE(points && lines);
 }
 
 TEST(PointDemand, DensityIsTheInverseOfCount) {
@@ -88,9 +96,9 @@ TEST(PointDemand, WhatHasNothingToGiveAsksForNothing) {
     plant.add_points(0, 1.0f);
     EXPECT_EQ(PointDemand(plant.parts()[2]).stored_count(), 0u);
     EXPECT_NEAR(PointDemand(plant.parts()[2]).area_m2(), 1.0, 1e-5);
-    plant.add_lines({1.0f, 1.0f}, 1.0f).projected_length_m = {};
+    plant.add_lines({1.0f, 1.0f}, 1.0f).line_length_m = 0.0f;
     EXPECT_EQ(PointDemand(plant.parts()[3]).stored_count(), 0u);
-    plant.add_points(10, 1.0f).projected_area_m2.m.fill(3e38f);
+    plant.add_points(10, 1.0f).area_m2 = INFINITY;
     EXPECT_EQ(PointDemand(plant.parts()[4]).area_m2(), 0.0) << "not finite";
 }
 

@@ -3,7 +3,7 @@
 // large again. Colour: mean linear radiance of what is covered, without shadows, before exposure and tone curve; the
 // largest difference of a channel over the mean of the three. Means over views, each drawn at several places of the
 // pixel grid with other seeds; 64 rays a pixel.
-// Measured: coverage within 3 %; colour within 3.3 % (pine), 3 (birch), 3.7 (oak and grass) and 5.5 (sunflower at 60 px).
+// Measured: coverage within 2.8 %; colour within 3.4 % (pine), 3.1 (birch), 4.7 (oak at 60 px), 3.7 (grass) and 2.9 (sunflower).
 // With every triangle 1 % and 3.4 % (grass, whose blades are curved).
 #include <gtest/gtest.h>
 #include "plugins/modeller/grow.h"
@@ -233,7 +233,7 @@ TEST_P(ReferenceAgreement, PlantsAreAsLargeAndAsBrightAsTraced) {
 INSTANTIATE_TEST_SUITE_P(Species, ReferenceAgreement,
                          ::testing::Values(SpeciesBound{"pine", 0.04}, SpeciesBound{"birch", 0.04},
                                            SpeciesBound{"oak", 0.05}, SpeciesBound{"grass", 0.05},
-                                           SpeciesBound{"sunflower", 0.07}),
+                                           SpeciesBound{"sunflower", 0.04}),
                          [](const auto& info) { return std::string(info.param.name); });
 
 }  // namespace

@@ -331,6 +331,7 @@ Stand random_stand(Random& random, float gain_an_octave, float nearer) {
         const float area = 0.5f * part.area_m2, length = 40.0f * part.area_m2;
         part.projected_area_m2.m = {area * area, area * area, area * area, 0.0f, 0.0f, 0.0f};
         part.projected_length_m.m = {length * length, length * length, length * length, 0.0f, 0.0f, 0.0f};
+        part.line_length_m = length / (0.25f * k_pi);
         part.line_error_m = next_log(random, -3.0f, -1.5f);
         for (uint32_t level = 0; level < k_gain_levels; ++level)
             part.coverage_gain[level] = 1.3f * std::pow(gain_an_octave, float(k_gain_levels - 1 - level));
@@ -392,18 +393,13 @@ TEST(SampleDistance, ChoosePartDrawsTheBudgetAlsoAfterACameraCut) {
 TEST(SampleDistance, ChooseCloudDrawsTheBudget) {
     Random random(10);
     struct Cloud {
-        PackedPart part{};
         std::vector<float> densities;
-        PlantView view;
+        float pixels_per_meter;
     };
     std::vector<Cloud> clouds(300);
     for (Cloud& cloud : clouds) {
-        const float area = next_log(random, 1.0f, 4.0f), power = random.next_in(0.6f, 1.3f);
+        const float power = random.next_in(0.6f, 1.3f);
         const size_t count = random.next_below(8192);
-        cloud.part.kind = PackedPartKind::points;
-        cloud.part.point_count = uint32_t(count);
-        cloud.part.area_m2 = 2.0f * area;
-        cloud.part.projected_area_m2.m = {area * area, area * area, area * area, 0.0f, 0.0f, 0.0f};
         for (size_t i = 0; i < count; ++i)
             cloud.densities.push_back(100.0f *
                                       std::pow((float(i) + random.next_unit()) / 8192.0f, 1.0f / power));
@@ -411,20 +407,18 @@ TEST(SampleDistance, ChooseCloudDrawsTheBudget) {
         if ((&cloud - clouds.data()) % 5 == 0)
             for (size_t i = count / 2; i < count / 2 + count / 10; ++i)
                 cloud.densities[i] = cloud.densities[count / 2];
-        cloud.view = {vec3(0.0f, 0.0f, -1.0f), next_log(random, -1.0f, 1.5f)};
+        cloud.pixels_per_meter = next_log(random, -1.0f, 1.5f);
     }
     for (uint64_t budget : {20'000u, 200'000u, 800'000u}) {
         FrameSettings settings;
         BudgetHistogram histogram;
         for (const Cloud& cloud : clouds)
-            add_cloud(histogram, cloud.part, cloud.densities, 1.2f * cloud.part.area_m2 / 2.0f, cloud.view,
-                      settings);
+            add_cloud(histogram, cloud.densities, cloud.pixels_per_meter, settings);
         settings.sample_distance_px = solve_sample_distance(histogram, 0, budget, k_least, k_most);
         double points = 0.0;
         for (const Cloud& cloud : clouds) {
-            const PartChoice choice =
-                choose_cloud(cloud.part, cloud.densities, 1.2f * cloud.part.area_m2 / 2.0f, cloud.view, 10.0f,
-                             1.5f * cloud.view.pixels_per_meter, settings);
+            const PartChoice choice = choose_cloud(cloud.densities, cloud.pixels_per_meter, 10.0f,
+                                                   1.5f * cloud.pixels_per_meter, settings);
             points += double(choice.points - choice.skipped_points);
         }
         EXPECT_GT(settings.sample_distance_px, k_least);
@@ -433,9 +427,6 @@ TEST(SampleDistance, ChooseCloudDrawsTheBudget) {
 }
 
 TEST(SampleDistance, BrokenCloudsAreIgnored) {
-    PackedPart part{};
-    part.projected_area_m2.m = {1.0f, 1.0f, 1.0f, 0.0f, 0.0f, 0.0f};
-    const PlantView view{vec3(0.0f, 0.0f, -1.0f), 10.0f};
     const std::vector<float> odd[] = {{},
                                       {k_nan, k_nan},
                                       {0.0f, 0.0f},
@@ -445,13 +436,13 @@ TEST(SampleDistance, BrokenCloudsAreIgnored) {
                                       {k_nan, k_nan, 1.0f}};
     for (const std::vector<float>& densities : odd) {
         BudgetHistogram histogram;
-        add_cloud(histogram, part, densities, 1.0f, view, {});
+        add_cloud(histogram, densities, 10.0f, {});
         const float d = solve_sample_distance(histogram, 0, 1, k_least, k_most);
         EXPECT_TRUE(d >= k_least && d <= k_most);
     }
     BudgetHistogram histogram;
-    for (float area : {0.0f, -1.0f, k_nan})
-        add_cloud(histogram, part, std::vector{1.0f, 2.0f}, area, view, {});
+    for (float pixels_per_meter : {0.0f, k_nan})
+        add_cloud(histogram, std::vector{1.0f, 2.0f}, pixels_per_meter, {});
     EXPECT_TRUE(histogram == BudgetHistogram());
 }
 

@@ -1,6 +1,7 @@
 #include "plugins/vegetation/lod/choose_part.h"
 
 #include <gtest/gtest.h>
+#include "plugins/vegetation/plant/line_points.h"
 #include "runtime/core/random.h"
 
 namespace coppice {
@@ -92,6 +93,27 @@ TEST(ChoosePoints, WithoutBlendingSwitchesAtOnce) {
     EXPECT_EQ(choose_points(part, 2001.0f, settings, 0.0f).points, 0u);
 }
 
+// What is seen of a point from the side it shows by |n . v|; which points are drawn, a tile's cloud must know for all sides.
+TEST(ChoosePart, PointsAreThoseOfAllSides) {
+    PackedPart card = leaf_part(1000);
+    card.projected_area_m2.m = {4.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};  // 2 m2 that face x
+    for (uint32_t flags : {0u, k_part_closed}) {
+        card.flags = flags;
+        const PartChoice front = choose_part(card, {vec3(1, 0, 0), 20.0f}, {}, 0.5f),
+                         edge = choose_part(card, {vec3(0, 0, 1), 20.0f}, {}, 0.5f);
+        EXPECT_EQ(front.points, flags ? 200u : 400u);
+        EXPECT_EQ(edge.points, front.points);
+        EXPECT_FLOAT_EQ(edge.splat_px, front.splat_px);
+        // All its points have |n . v| = 1 from the front, and then cover what is seen there, a half of what is closed.
+        EXPECT_NEAR(float(front.points) * front.splat_px * front.splat_px, flags ? 400.0f : 800.0f, 1.0f);
+    }
+    FrameSettings alike;
+    alike.weigh_by_facing = false;
+    card.flags = 0;
+    EXPECT_EQ(choose_part(card, {vec3(1, 0, 0), 20.0f}, alike, 0.5f).points, 800u);
+    EXPECT_EQ(choose_part(card, {vec3(0, 0, 1), 20.0f}, alike, 0.5f).points, 0u);
+}
+
 TEST(ChooseLines, LinesOfWidthDCoverTheProjectedArea) {
     PackedPart part = twig_part();
     FrameSettings settings;
@@ -112,6 +134,50 @@ TEST(ChooseLines, TrianglesWhereTheErrorShowsOrLinesWouldNotFill) {
     EXPECT_EQ(choose_part(part, view_at(201.0f), {}, 0.0f).triangles, 600u);  // eps 0.005 m is over a pixel
     EXPECT_EQ(choose_part(part, view_at(150.0f), {}, 0.0f).triangles, 600u);  // q = 0.4 / 39 * 150 > 1
     EXPECT_EQ(choose_part(part, view_at(50.0f), {}, 0.0f).triangles, 0u);
+}
+
+// Where lines are shorter than d', or few points would do. As much is covered by either.
+TEST(ChooseLines, FarAwayPointsStandForThem) {
+    PackedPart twigs = twig_part(), trunk = twig_part();  // twigs: lines of 0.5 m
+    trunk.line_count = 2;                                 // of 25 m
+    EXPECT_GT(choose_part(twigs, view_at(6.0f), {}, 0.5f).lines, 0u);
+    EXPECT_EQ(choose_part(twigs, view_at(6.0f), {}, 0.5f).points, 0u);
+    EXPECT_EQ(choose_part(twigs, view_at(1.0f), {}, 0.5f).lines, 0u);
+    EXPECT_EQ(choose_part(trunk, view_at(3.0f), {}, 0.5f).lines, 0u);
+    twigs.importance = trunk.importance = 2.0f;
+    for (const PackedPart* part : {&twigs, &trunk}) {
+        const PlantView view = view_at(1.5f);
+        double covered = 0.0;
+        constexpr int k_chances = 1000;
+        for (int i = 0; i < k_chances; ++i) {
+            const PartChoice choice = choose_part(*part, view, {}, (float(i) + 0.5f) / k_chances);
+            ASSERT_EQ(choice.lines, 0u);
+            ASSERT_GT(choice.density_limit_m2, 0.0f) << "the points say how large they are";
+            covered += 0.5 * double(choice.points) * double(choice.splat_px * choice.splat_px) / k_chances;
+        }
+        // A quarter of 2 m2 would be 0.5; the part is not closed: twice that.
+        EXPECT_NEAR(covered, 1.5 * 1.5 * 1.0, 0.02);
+    }
+    FrameSettings alike;
+    alike.weigh_by_facing = false;
+    EXPECT_EQ(choose_part(twigs, view_at(0.5f), alike, 0.5f).points, 0u);
+}
+
+// No two plants of a stand change at once.
+TEST(ChooseLines, EachPlantGoesOverAtADistanceOfItsOwn) {
+    const PackedPart part = twig_part();
+    float before = -1.0f;
+    for (float per_meter = 1.0f; per_meter < 6.0f; per_meter *= 1.02f) {
+        float with_lines = 0.0f;
+        constexpr int k_plants = 4096;
+        for (int i = 0; i < k_plants; ++i)
+            with_lines += choose_part(part, view_at(per_meter), {}, float(i) / k_plants).lines > 0
+                              ? 1.0f / k_plants
+                              : 0.0f;
+        if (before >= 0.0f) EXPECT_NEAR(with_lines, before, 0.08f) << per_meter;
+        before = with_lines;
+    }
+    EXPECT_FLOAT_EQ(before, 1.0f);
 }
 
 TEST(ChooseLines, PrintedAndIsotropicDifferByThePaperOverCount) {
@@ -139,7 +205,8 @@ TEST(ChoosePart, EverySizeAndSettingHasAnAnswer) {
         PlantView view = view_at(portable_exp2(random.next_in(-40.0f, 40.0f)));
         PartChoice choice = choose_part(part, view, settings, random.next_unit());
         EXPECT_LE(choice.triangles, part.triangle_count);
-        EXPECT_LE(choice.points, part.point_count);
+        EXPECT_LE(choice.points,
+                  part.kind == PackedPartKind::lines ? line_point_count(part) : part.point_count);
         EXPECT_LE(choice.lines, part.line_count);
         EXPECT_TRUE(std::isfinite(choice.splat_px) && std::isfinite(choice.line_width_px));
     }

@@ -18,6 +18,7 @@ constexpr uint32_t k_least_views = 8, k_most_views = 8192;
 constexpr float k_least_area_px2 = 0.5f;
 constexpr double k_least_pixels = 2000.0;  // over all views: noise under 3 %
 constexpr int k_rounds = 6;
+constexpr float k_settled = 0.001f;  // octaves
 
 struct View {
     vec3 right, up;
@@ -64,15 +65,21 @@ class PartCoverage {
         for (uint32_t i = 0; i < views; ++i)
             wanted += full(raster, view_of(i, views), pixels_per_meter, side);
         if (wanted == 0) return 0.0f;
-        float gain = 1.0f;
+        // Coverage grows by a power of the area drawn that falls where points lie on each other: secants in logarithms.
+        float gain = 1.0f, power = 1.0f, last_gain = 0.0f, last_drawn = 0.0f;
         for (int round = 0; round < k_rounds; ++round) {
-            uint64_t drawn = 0;
+            uint64_t pixels = 0;
             for (uint32_t i = 0; i < views; ++i)
-                drawn += reduced(raster, view_of(i, views), pixels_per_meter, side, gain);
-            if (drawn == 0) return 0.0f;
-            // Coverage grows less than the area drawn; the steps are the full ratio and converge from one
-            // side.
-            gain = std::clamp(gain * float(double(wanted) / double(drawn)), 0.25f, 4.0f);
+                pixels += reduced(raster, view_of(i, views), pixels_per_meter, side, gain);
+            if (pixels == 0) return 0.0f;
+            const float drawn = portable_log2(float(pixels)), missing = portable_log2(float(wanted)) - drawn;
+            if (std::fabs(missing) < k_settled) break;
+            const float log_gain = portable_log2(gain);
+            if (round > 0 && log_gain != last_gain)
+                power = std::clamp((drawn - last_drawn) / (log_gain - last_gain), 0.25f, 1.0f);
+            last_gain = log_gain;
+            last_drawn = drawn;
+            gain = std::clamp(gain * portable_exp2(missing / power), 0.25f, 4.0f);
         }
         return gain;
     }
@@ -94,20 +101,19 @@ class PartCoverage {
     uint64_t reduced(CoverageRaster& raster, const View& view, float pixels_per_meter, uint32_t side,
                      float gain) const {
         vec3 direction = glm::cross(view.up, view.right);
-        float area = gain * part_.projected_area_m2.evaluate(direction) * pixels_per_meter * pixels_per_meter;
+        const float square = pixels_per_meter * pixels_per_meter;
         raster.begin();
         if (!points_.empty()) {
+            // lod/choose_part.cpp: the mean over all directions asks for points; |n . v|, a half in the mean, sizes them.
+            const float area = gain * mean_projected_area_m2(part_) * square;
             float stored = float(points_.size()), p = std::min(part_.importance * area, stored);
-            // lod/choose_part.cpp: squares by |n . v|
-            float sides = part_.flags & k_part_closed ? 2.0f : 1.0f;
-            float facing =
-                std::min(sides * part_.projected_area_m2.evaluate(direction) / part_.area_m2, 1.0f);
-            float splat_area = area / std::max(p * facing, 1.0e-6f);
+            float splat_area = 2.0f * area / std::max(p, 1.0e-6f);
             size_t count = std::min(points_.size(), size_t(p + view.chance));
             for (size_t i = 0; i < count; ++i)
                 raster.square(place(view, points_[i], pixels_per_meter, side),
                               std::sqrt(splat_area * facing_of(points_[i], direction)));
         } else {
+            const float area = gain * part_.projected_area_m2.evaluate(direction) * square;
             float length = part_.projected_length_m.evaluate(direction) * pixels_per_meter;
             float q = std::min(part_.importance * area / std::max(length, 1.0e-6f), 1.0f),
                   stored = float(line_vertices_.size() / 2);
@@ -147,7 +153,8 @@ std::array<float, k_gain_levels> measure_coverage_gain(const PackedPart& part,
                                                        std::span<const PackedVertex> line_vertices) {
     std::array<float, k_gain_levels> gains;
     gains.fill(1.0f);
-    float area_m2 = mean_over_views(part.projected_area_m2),
+    // By which gain_at is asked.
+    float area_m2 = points.empty() ? mean_over_views(part.projected_area_m2) : mean_projected_area_m2(part),
           length_m = mean_over_views(part.projected_length_m);
     if (!(area_m2 > 0.0f) || (points.empty() && !(line_vertices.size() > 1 && length_m > 0.0f))) return gains;
     PartCoverage coverage(part, triangle_vertices, points, line_vertices);

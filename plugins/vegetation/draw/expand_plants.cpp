@@ -41,7 +41,7 @@ ExpandCounts expand_plants(const PlantRun& run, const SceneGeometry& geometry, c
 namespace {
 
 struct CloudView {
-    PlantView view;  // of the tile's centre
+    float pixels_per_meter;  // at the tile's centre
     float nearest_pixels_per_meter;
 };
 
@@ -49,8 +49,7 @@ CloudView view_of(const CloudTile& tile, const Frustum& frustum) {
     const vec3 center = tile.bounds_camera.center();
     const float distance_m = glm::length(center);
     const float focal_px = frustum.focal_px * off_axis_stretch(frustum, center, distance_m);
-    return {{distance_m > 0.0f ? center * (1.0f / distance_m) : vec3(0.0f, 0.0f, -1.0f),
-             focal_px / std::max(distance_m, frustum.near_m)},
+    return {focal_px / std::max(distance_m, frustum.near_m),
             focal_px / std::max(tile.nearest_m, frustum.near_m)};
 }
 
@@ -60,8 +59,7 @@ void measure_clouds(std::span<const CloudTile> tiles, const SceneGeometry& geome
                     const FrameSettings& settings, BudgetHistogram& histogram) {
     for (const CloudTile& tile : tiles) {
         const DrawCloud& cloud = geometry.clouds[tile.cloud];
-        add_cloud(histogram, cloud.part, cloud.densities, cloud.mean_area_m2, view_of(tile, frustum).view,
-                  settings);
+        add_cloud(histogram, cloud.densities, view_of(tile, frustum).pixels_per_meter, settings);
     }
 }
 
@@ -78,10 +76,11 @@ void expand_clouds(std::span<const CloudTile> tiles, const SceneGeometry& geomet
                      seen.nearest_pixels_per_meter / std::sqrt(std::max(tile.finest_density, 1e-12f)));
         // A tile around the image plane has no depth to go by: all of it is drawn as its nearest place asks for.
         const float depth_m = std::max(glm::dot(frustum.forward, tile.bounds_camera.center()), 0.0f);
-        const PartChoice choice = choose_cloud(cloud.part, cloud.densities, cloud.mean_area_m2, seen.view,
-                                               depth_m, seen.nearest_pixels_per_meter, tile_settings);
+        const PartChoice choice = choose_cloud(cloud.densities, seen.pixels_per_meter, depth_m,
+                                               seen.nearest_pixels_per_meter, tile_settings);
         if (choice.points == 0) continue;
-        work.add(cloud.geometry, choice, work.add_instance(instance_of(mat3(1.0f), 1.0f, tile.origin_camera)), turn);
+        work.add(cloud.geometry, choice, work.add_instance(instance_of(mat3(1.0f), 1.0f, tile.origin_camera)),
+                 turn);
     }
 }
 

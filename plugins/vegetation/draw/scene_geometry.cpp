@@ -2,10 +2,23 @@
 
 #include <algorithm>
 #include <bit>
-#include "plugins/vegetation/plant/direction_form.h"
+#include "plugins/vegetation/plant/line_points.h"
 
 namespace coppice {
 namespace {
+
+// What stands for the last part's lines where it is far.
+void add_line_points(const Plant& plant, const PackedPart& part, SceneGeometry& geometry) {
+    PartGeometry& place = geometry.part_geometry.back();
+    place.first_point = uint32_t(geometry.vertices.size());
+    place.first_owner = uint32_t(geometry.owners.size());
+    place.point_count = line_point_count(part);
+    for (uint32_t i = 0; i < place.point_count; ++i) {
+        const LinePoint point = line_point(part, plant.line_vertices, i);
+        geometry.vertices.push_back(point.vertex);
+        geometry.owners.push_back(std::bit_cast<uint32_t>(pack_density(0.0, point.width_share)));
+    }
+}
 
 constexpr uint32_t k_flat_vertices = 6;
 
@@ -23,8 +36,6 @@ std::array<PackedVertex, k_flat_vertices> flat_square(const Ground& ground) {
 
 void set_cloud(SceneGeometry& geometry, uint32_t index, const TileCloud& cloud) {
     DrawCloud& drawn = geometry.clouds[index];
-    drawn.part = cloud.part;
-    drawn.mean_area_m2 = float(mean_over_directions(cloud.part.projected_area_m2));
     drawn.densities.assign(cloud.densities.begin(), cloud.densities.end());
     drawn.geometry.point_count = uint32_t(cloud.points.size());
 }
@@ -47,6 +58,11 @@ Result<SceneGeometry> gather_geometry(const GeometrySource& source) {
     for (const Plant& plant : plants) {
         vertex_count += plant.triangle_vertices.size() + plant.points.size() + plant.line_vertices.size();
         owner_count += plant.point_owners.size();
+        for (const auto& parts : {plant.parts, plant.cells})
+            for (const PackedPart& part : parts) {
+                vertex_count += line_point_count(part);
+                owner_count += line_point_count(part);
+            }
     }
     for (const TileCloud* cloud : source.clouds) {
         vertex_count += cloud->points.size();
@@ -73,8 +89,8 @@ Result<SceneGeometry> gather_geometry(const GeometrySource& source) {
         constexpr float k_slack = 1.001f;  // rounding
         model.foot_radius_m = k_slack * (glm::length(model.center_plant) + model.radius_m);
         for (size_t line_end = 1; line_end < plant.line_vertices.size(); line_end += 2)
-            geometry.most_line_width =
-                std::max(geometry.most_line_width, std::bit_cast<float>(plant.line_vertices[line_end].surface));
+            geometry.most_line_width = std::max(geometry.most_line_width,
+                                                std::bit_cast<float>(plant.line_vertices[line_end].surface));
         model.first_part = uint32_t(geometry.parts.size());
         model.part_count = uint32_t(plant.parts.size());
         uint32_t first_triangle_vertex = append(plant.triangle_vertices);
@@ -89,6 +105,7 @@ Result<SceneGeometry> gather_geometry(const GeometrySource& source) {
                 {first_triangle_vertex + part.first_triangle * 3, first_point + part.first_point,
                  first_line_vertex + part.first_line * 2, first_owner + part.first_point,
                  (part.flags & k_part_faces_outwards) != 0, part.point_count, part.line_count});
+            if (part.kind == PackedPartKind::lines) add_line_points(plant, part, geometry);
             const vec3 low(part.bounds_min[0], part.bounds_min[1], part.bounds_min[2]);
             const vec3 high(part.bounds_max[0], part.bounds_max[1], part.bounds_max[2]);
             geometry.part_spheres.push_back({(low + high) * 0.5f, 0.5f * glm::length(high - low)});
@@ -112,7 +129,7 @@ Result<SceneGeometry> gather_geometry(const GeometrySource& source) {
         place.first_point = append(cloud->points);
         place.first_owner = uint32_t(geometry.owners.size());
         for (float density : cloud->densities) geometry.owners.push_back(std::bit_cast<uint32_t>(density));
-        geometry.clouds.push_back({{}, 0.0f, {}, place});
+        geometry.clouds.push_back({{}, place});
         set_cloud(geometry, uint32_t(geometry.clouds.size() - 1), *cloud);
     }
     for (const Ground& ground : source.grounds) {
@@ -127,7 +144,7 @@ Result<SceneGeometry> gather_geometry(const GeometrySource& source) {
         PartGeometry place{};
         place.first_point = uint32_t(geometry.vertices.size()) + i * k_cloud_points;
         place.first_owner = uint32_t(geometry.owners.size()) + i * k_cloud_points;
-        geometry.clouds.push_back({{}, 0.0f, {}, place});
+        geometry.clouds.push_back({{}, place});
     }
     return geometry;
 }

@@ -32,8 +32,6 @@ struct PartSphere {
 
 // A tile's cloud: points in tile space.
 struct DrawCloud {
-    PackedPart part;
-    float mean_area_m2;            // projected, over all directions
     std::vector<float> densities;  // of its points, ascending
     PartGeometry geometry;
 };
@@ -63,7 +61,7 @@ struct SceneGeometry {
 };
 
 struct GeometrySource {
-    std::string path;                      // for messages
+    std::string path;  // for messages
     std::span<const SceneModel> models;
     std::span<const Plant> plants;         // plants[i] belongs to models[i]
     std::vector<const TileCloud*> clouds;  // always drawable

@@ -27,7 +27,7 @@ struct SeenPlant {
 struct SeenPlants {
     std::vector<SeenPlant> plants;
     std::vector<SeenPart> parts;
-    uint32_t hidden_plants = 0;  // in view, but behind the ground
+    uint32_t hidden_plants = 0;   // in view, but behind the ground
     uint64_t full_triangles = 0;  // had all been drawn
 };
 
@@ -54,7 +54,7 @@ void each_part(const SeenPlants& seen, const SceneGeometry& geometry, const Fram
                 continue;
             }
             for (uint32_t cell = cells.first; cell < cells.first + cells.count; ++cell)
-                visit(plant, cell, project_part(geometry.parts[cell], plant.view, settings.projection));
+                visit(plant, cell, project_part(geometry.parts[cell], plant.view, settings));
         }
 }
 

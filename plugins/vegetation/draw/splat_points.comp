@@ -7,7 +7,8 @@
 #include "plugins/vegetation/draw/raster.glsl"
 
 layout(constant_id = 2) const uint k_side_limit = 1u;  // pixels a square can touch along one axis: 1, 2, or 0: any
-// Leaves out points whose triangle is drawn; of a cloud those that their place does not ask for.
+// Leaves out points whose triangle is drawn. Clouds and points in place of lines carry a density: of those, what their
+// place does not ask for; the others are as large as its lowest bits say (plant/line_points.h, pack_density).
 layout(constant_id = 3) const bool k_blend = false;
 layout(binding = 4) uniform utextureBuffer owners;
 
@@ -17,7 +18,7 @@ void main() {
     Entry entry = load_entry(index);
     Transform t = load_transform(entry.instance, entry.ground);
     ivec2 size = ivec2(frame.row_x.w, frame.row_y.w);
-    int side = k_side_limit > 0u ? int(k_side_limit) : min(int(ceil(entry.size_px)), 64);
+    bool carries_density = k_blend && entry.density_limit > 0.0;
 
     for (uint i = first_item; i < entry.count; i += step) {
         uint owner = k_blend ? texelFetch(owners, int(entry.first_owner + i)).x : 0u;
@@ -28,11 +29,13 @@ void main() {
         float facing = abs(dot(unit_normal(t, vertex.w), view_direction(t, position)));
         // size_px is of a point that faces the viewer.
         float side_px = entry.mean_facing > 0.0 ? entry.size_px * sqrt(facing) : entry.size_px;
+        if (carries_density) side_px *= exp2((float(owner & 0xffu) - 128.0) / 32.0);
+        int side = k_side_limit > 0u ? int(k_side_limit) : min(int(ceil(side_px)), 64);
         // First pixel whose centre lies inside, and how many more there are along each axis.
         vec2 low = p.xy - 0.5 * side_px - 0.5;
         vec2 first = ceil(low);
         ivec2 count = ivec2(ceil(low + side_px) - first);
-        if (k_blend && entry.density_limit > 0.0 && uintBitsToFloat(owner) * p.z * p.z > entry.density_limit) continue;
+        if (carries_density && uintBitsToFloat(owner) * p.z * p.z > entry.density_limit) continue;
         bool in_view = p.z >= frame.row_w.w && all(greaterThan(p.xy, vec2(-64.0))) &&
                        all(lessThan(p.xy, vec2(size) + 64.0));
         if (!in_view) continue;

@@ -11,7 +11,7 @@
 namespace coppice {
 
 // One dispatch each. Points by the pixels a splat can touch along one axis; blend: of any size, leaving out points
-// whose triangle is drawn, and of clouds those beyond the density their place asks for.
+// whose triangle is drawn, and of clouds those beyond the density their place asks for; each may have a size of its own.
 enum class WorkKind : uint8_t { triangles, lines, points_1, points_2, points_any, points_blend };
 inline constexpr size_t k_work_kinds = 6;
 

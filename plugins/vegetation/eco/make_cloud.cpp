@@ -33,9 +33,8 @@ struct Totals {
     std::array<double, k_density_steps> exhausted_area_m2{};
 };
 
-// Everything but the points. gain(T): of all the plants, by area, at that density.
-template <class Gain>
-void finish(TileCloud& cloud, const Totals& totals, Gain&& gain) {
+// Everything but the points.
+void finish(TileCloud& cloud, const Totals& totals) {
     PackedPart& part = cloud.part;
     copy_name("cloud", part.name, sizeof part.name);
     part.kind = PackedPartKind::points;
@@ -63,12 +62,6 @@ void finish(TileCloud& cloud, const Totals& totals, Gain&& gain) {
         part.bounds_min[axis] = bounds.min[axis];
         part.bounds_max[axis] = bounds.max[axis];
     }
-    const double seen_m2 = mean_over_directions(part.projected_area_m2);
-    if (!(seen_m2 > 0.0)) return;
-    for (size_t level = 0; level < k_gain_levels; ++level) {
-        const double fill = 1.0 / double(1u << (k_gain_levels - 1 - level));
-        part.coverage_gain[level] = float(gain(fill * double(part.point_count) / seen_m2));
-    }
 }
 
 // One part of one plant, and the next of its points.
@@ -77,70 +70,44 @@ struct Source {
     uint32_t plant, part;
     double scale_square;
     float chance;
-    float density = 0.0f;       // of the next point
-    uint32_t given = 0;         // points so far
-    uint32_t line = 0;          // the next point's
-    double width_before = 0.0;  // of all lines before that one
-
-    double asked() const { return double(given) + 1.0 - double(chance); }
+    uint32_t given = 0;  // points so far
+    LinePoint point{};   // the next
+    float density = 0.0f;
 };
 
-float line_width(const PackedPart& part, const Plant& plant, uint32_t line) {
-    return std::bit_cast<float>(plant.line_vertices[2 * (size_t(part.first_line) + line) + 1].surface);
-}
-
-// Lines lie one behind the other, as broad as long: every unit of width has a point. False where there are no more.
+// False where there are no more.
 bool find_point(Source& source, const Plant& plant) {
     const PointDemand& demand = *source.demand;
-    if (demand.part().kind == PackedPartKind::lines) {
-        while (source.line < demand.stored_count()) {
-            const double width = double(line_width(demand.part(), plant, source.line));
-            if (source.width_before + width >= source.asked()) break;
-            source.width_before += width;
-            ++source.line;
-        }
-        if (source.line >= demand.stored_count()) return false;
-    } else if (source.given >= demand.stored_count()) {
-        return false;
-    }
-    const double density = demand.density(source.asked()) / source.scale_square;
-    source.density = std::max(source.density, float(std::min(density, k_densest)));
+    const PackedPart& part = demand.part();
+    if (source.given >= demand.stored_count()) return false;
+    const double asked = double(source.given) + 1.0 - double(source.chance);
+    const double density = demand.density(asked) / source.scale_square;
+    source.point = part.kind == PackedPartKind::lines
+                       ? line_point(part, plant.line_vertices, source.given)
+                       : LinePoint{plant.points[size_t(part.first_point) + source.given], 1.0f};
+    source.density = std::max(
+        source.density,
+        pack_density(std::min(density, k_densest), source.point.width_share / float(demand.importance())));
     return density < k_densest;
-}
-
-PackedVertex stored_point(const Source& source, const Plant& plant) {
-    const PackedPart& part = source.demand->part();
-    if (part.kind == PackedPartKind::points) return plant.points[size_t(part.first_point) + source.given];
-    const PackedVertex* ends = &plant.line_vertices[2 * (size_t(part.first_line) + source.line)];
-    const float along = std::clamp(
-        float((source.asked() - source.width_before) / double(line_width(part, plant, source.line))), 0.0f,
-        1.0f);
-    const vec3 begin(ends[0].x_plant, ends[0].y_plant, ends[0].z_plant);
-    const vec3 at = begin + (vec3(ends[1].x_plant, ends[1].y_plant, ends[1].z_plant) - begin) * along;
-    return {at.x, at.y, at.z, ends[0].surface};
-}
-
-// Colour, openness and kind keep their bits: coding them anew would dither them once more.
-uint32_t turn_surface(uint32_t surface, const mat3& rotation) {
-    constexpr uint32_t k_normal_bits = 0xfffu;
-    const uint32_t turned =
-        encode_surface({rotation * decode_surface(surface).normal, vec3(0.0f), 0.0f, false}, 0);
-    return (surface & ~k_normal_bits) | (turned & k_normal_bits);
 }
 
 // The demands of the models that are used, found by model.
 class DemandsOfModels {
   public:
-    explicit DemandsOfModels(std::span<const Plant> plants) : plants_(plants), of_model_(plants.size()) {}
+    DemandsOfModels(std::span<const Plant> plants, std::span<const SceneModel> scene_models)
+        : plants_(plants), scene_models_(scene_models), of_model_(plants.size()) {}
 
     std::span<const PointDemand> of(uint32_t model) {
         std::vector<PointDemand>& demands = of_model_[model];
-        if (demands.empty()) demands = {plants_[model].parts.begin(), plants_[model].parts.end()};
+        const float importance = model < scene_models_.size() ? scene_models_[model].importance : 1.0f;
+        if (demands.empty())
+            for (const PackedPart& part : plants_[model].parts) demands.emplace_back(part, importance);
         return demands;
     }
 
   private:
     std::span<const Plant> plants_;
+    std::span<const SceneModel> scene_models_;
     std::vector<std::vector<PointDemand>> of_model_;  // never moved once made: sources point into them
 };
 
@@ -151,9 +118,10 @@ bool is_usable(const PlantPosition& p) {
 }  // namespace
 
 TileCloud gather_cloud(std::span<const PlantPosition> positions, std::span<const PlantTurn> turns,
-                       std::span<const PlantModel> models, std::span<const Plant> plants) {
+                       std::span<const PlantModel> models, std::span<const Plant> plants,
+                       std::span<const SceneModel> scene_models) {
     assert(positions.size() == turns.size() && positions.size() == models.size());
-    DemandsOfModels demands(plants);
+    DemandsOfModels demands(plants, scene_models);
     Totals totals;
     std::vector<Source> sources;
     for (size_t i = 0; i < positions.size(); ++i) {
@@ -170,7 +138,8 @@ TileCloud gather_cloud(std::span<const PlantPosition> positions, std::span<const
             const PackedPart& part = demand.part();
             for (size_t d = 0; d < directions_plant.size(); ++d)
                 totals.seen_m2[d] +=
-                    scale_square * double(part.projected_area_m2.evaluate(directions_plant[d]));
+                    std::min(scale_square * double(part.projected_area_m2.evaluate(directions_plant[d])),
+                             k_largest_area_m2);
             totals.surface_m2 +=
                 double(part.area_m2) * scale_square * (part.flags & k_part_closed ? 0.5 : 1.0);
             for (size_t c = 0; c < 3; ++c)
@@ -198,10 +167,11 @@ TileCloud gather_cloud(std::span<const PlantPosition> positions, std::span<const
         const Plant& plant = plants[models[source.plant].model];
         const PlantPosition& place = positions[source.plant];
         const mat3 rotation = rotation_matrix(turns[source.plant]);
-        const PackedVertex stored = stored_point(source, plant);
+        const PackedVertex& stored = source.point.vertex;
         const vec3 at = vec3(place.x_tile, place.y_tile, place.z_tile) +
                         rotation * (vec3(stored.x_plant, stored.y_plant, stored.z_plant) * place.scale);
-        cloud.points.push_back({at.x, at.y, at.z, turn_surface(stored.surface, rotation)});
+        const vec3 normal = rotation * decode_surface(stored.surface).normal;
+        cloud.points.push_back({at.x, at.y, at.z, replace_normal(stored.surface, normal)});
         cloud.densities.push_back(source.density);
         ++source.given;
         if (find_point(source, plant)) {
@@ -212,33 +182,25 @@ TileCloud gather_cloud(std::span<const PlantPosition> positions, std::span<const
         }
     }
 
-    finish(cloud, totals, [&](double density) {
-        double area_m2 = 0.0, drawn_m2 = 0.0;
-        for (const Source& source : sources) {
-            const double of_part = source.demand->area_m2() * source.scale_square;
-            area_m2 += of_part;
-            drawn_m2 += of_part * source.demand->gain(density * source.scale_square);
-        }
-        return drawn_m2 / area_m2;
-    });
+    finish(cloud, totals);
     return cloud;
 }
 
 TileCloud merge_clouds(std::span<const TileCloud* const> children, std::span<const vec3> offsets_m) {
     assert(children.size() == offsets_m.size());
     Totals totals;
-    std::vector<double> areas_m2(children.size(), 0.0);
     for (size_t i = 0; i < children.size(); ++i) {
         const TileCloud& child = *children[i];
+        double area_m2 = 0.0;
         for (size_t step = 0; step < k_density_steps; ++step) {
-            areas_m2[i] += double(child.exhausted_area_m2[step]);
+            area_m2 += double(child.exhausted_area_m2[step]);
             totals.exhausted_area_m2[step] += double(child.exhausted_area_m2[step]);
         }
         for (size_t d = 0; d < totals.seen_m2.size(); ++d)
             totals.seen_m2[d] += double(child.part.projected_area_m2.evaluate(projection_directions()[d]));
         totals.surface_m2 += double(child.part.area_m2);
         for (size_t c = 0; c < 3; ++c)
-            totals.color[glm::length_t(c)] += areas_m2[i] * double(child.part.mean_color_linear[c]);
+            totals.color[glm::length_t(c)] += area_m2 * double(child.part.mean_color_linear[c]);
     }
 
     TileCloud cloud;
@@ -260,16 +222,7 @@ TileCloud merge_clouds(std::span<const TileCloud* const> children, std::span<con
         cloud.densities.push_back(children[nearest]->densities[index]);
     }
 
-    finish(cloud, totals, [&](double density) {
-        double area_m2 = 0.0, drawn_m2 = 0.0;
-        for (size_t i = 0; i < children.size(); ++i) {
-            const PackedPart& part = children[i]->part;
-            area_m2 += areas_m2[i];
-            const double fill = part.point_count > 0 ? density * areas_m2[i] / double(part.point_count) : 0.0;
-            drawn_m2 += areas_m2[i] * double(gain_at(part, float(std::min(fill, k_densest))));
-        }
-        return drawn_m2 / area_m2;
-    });
+    finish(cloud, totals);
     return cloud;
 }
 

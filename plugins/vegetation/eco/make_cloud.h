@@ -8,7 +8,8 @@
 #include <span>
 #include <vector>
 #include "plugins/vegetation/components.h"
-#include "plugins/vegetation/plant/plant.h"
+#include "plugins/vegetation/eco/scene.h"
+#include "plugins/vegetation/plant/line_points.h"
 
 namespace coppice {
 
@@ -21,7 +22,7 @@ inline constexpr uint32_t k_density_steps = 256;
 struct TileCloud {
     PackedPart part{};                 // kind points, no triangles; tile space
     std::vector<PackedVertex> points;  // tile space
-    std::vector<float> densities;      // T of each point, ascending
+    std::vector<float> densities;      // of each point, ascending: T and size (pack_density)
     // Projected area of the parts that run out of points at each step of the density; kept for merging.
     std::array<float, k_density_steps> exhausted_area_m2{};
     float exhausted_density = 0.0f;  // parts of at most k_exhausted_share have run out up to here
@@ -33,11 +34,13 @@ struct TileCloud {
 };
 
 // The k_cloud_points points that the plants draw first, seen from all sides in the mean: ties by plant, part, point.
-// Lines give points along their axes, as many as their widths ask for. plants[m] is what models[i].model == m draws;
-// requires models in range and columns of one length. Importance is left out. What no scene has is left out as well:
-// places that are not finite, scales that are not in (0, 1e5], parts of more than 1000 km2.
+// Lines give the points that stand for them where they are far (plant/line_points.h). plants[m] is what
+// models[i].model == m draws, with the importance of scene_models[m], 1 where there are none; requires models in range and
+// columns of one length. What no scene has is left out: places that are not finite, scales that are not in (0, 1e5], parts
+// of more than 1000 km2.
 TileCloud gather_cloud(std::span<const PlantPosition> positions, std::span<const PlantTurn> turns,
-                       std::span<const PlantModel> models, std::span<const Plant> plants);
+                       std::span<const PlantModel> models, std::span<const Plant> plants,
+                       std::span<const SceneModel> scene_models = {});
 
 // What gather_cloud of all the children's plants would give. offsets_m: each child's origin relative to the parent's.
 TileCloud merge_clouds(std::span<const TileCloud* const> children, std::span<const vec3> offsets_m);

@@ -1,7 +1,7 @@
 #include "plugins/vegetation/eco/point_demand.h"
 
 #include <algorithm>
-#include "plugins/vegetation/plant/direction_form.h"
+#include "plugins/vegetation/plant/line_points.h"
 
 namespace coppice {
 namespace {
@@ -10,14 +10,17 @@ double fill_at_level(size_t level) { return 1.0 / double(1u << (k_gain_levels - 
 
 }  // namespace
 
-PointDemand::PointDemand(const PackedPart& part) : part_(&part), lines_(part.kind == PackedPartKind::lines) {
-    const double area_m2 = mean_over_directions(part.projected_area_m2);
+PointDemand::PointDemand(const PackedPart& part, float model_importance)
+    : part_(&part), lines_(part.kind == PackedPartKind::lines) {
+    const double importance = double(part.importance) * double(model_importance);
+    if (importance > 0.0) importance_ = std::clamp(importance, k_least_importance, k_most_importance);
+    const double area_m2 = double(mean_projected_area_m2(part));
     if (part.triangle_count == 0 || !(area_m2 > 0.0) || !std::isfinite(area_m2)) return;
     area_m2_ = area_m2;
     if (lines_) {
-        const double length_m = mean_over_directions(part.projected_length_m);
+        const double length_m = double(mean_projected_length_m(part));
         if (!(length_m > 0.0) || !std::isfinite(length_m)) return;
-        stored_count_ = part.line_count;
+        stored_count_ = line_point_count(part);
         unit_ = length_m / area_m2 * (length_m / area_m2);
     } else {
         stored_count_ = part.point_count;
@@ -37,7 +40,7 @@ double PointDemand::gain(double density) const {
 }
 
 double PointDemand::density(double count) const {
-    const double asked = count / (unit_ * area_m2_);
+    const double asked = count / (unit_ * area_m2_ * importance_);
     const size_t level = size_t(std::lower_bound(reach_.begin(), reach_.end(), asked) - reach_.begin());
     const auto& gains = part_->coverage_gain;
     if (level == 0) return unit_ * (asked / double(gains.front()));

@@ -16,7 +16,8 @@ void fill_leaf(const Scene& scene, std::span<const Plant> plants, TileNode& node
     auto rows = [&tile](const auto& column) {
         return std::span(column).subspan(tile.first_plant, tile.plant_count);
     };
-    node.cloud = gather_cloud(rows(scene.positions), rows(scene.turns), rows(scene.plant_models), plants);
+    node.cloud = gather_cloud(rows(scene.positions), rows(scene.turns), rows(scene.plant_models), plants,
+                              scene.models);
 }
 
 void fill_parent(std::span<const TileNode> children, TileNode& node) {

@@ -1,5 +1,7 @@
 #include "plugins/vegetation/lod/budget.h"
 
+#include "plugins/vegetation/plant/line_points.h"
+
 namespace coppice {
 namespace {
 
@@ -155,22 +157,25 @@ void add_part(BudgetHistogram& histogram, const PackedPart& part, const PartProj
     const float d = std::max(held ? settings.line_sample_distance_px : settings.sample_distance_px, 1.0e-3f);
     if (measured) area_px2 *= gain_at(part, area_px2 / (length_px * d));
     const float all_lines_px = part.importance * area_px2 / length_px;  // the d' of q = 1
+    const float per_meter = projected.pixels_per_meter;
+    const float points_at_1px = line_points_at_1px(part, per_meter, settings);
+    const float points_from_px = line_points_from_px(part, points_at_1px, per_meter);
     if (held) {
-        const bool triangles = d < all_lines_px || d <= part.line_error_m * projected.pixels_per_meter;
-        return histogram.add_always(triangles ? all : 2.0f * float(part.line_count) * all_lines_px / d);
+        if (d < all_lines_px || d <= part.line_error_m * per_meter) return histogram.add_always(all);
+        if (d >= points_from_px)
+            return histogram.add_saturating(points_at_1px, float(line_point_count(part)), 1.0f);
+        return histogram.add_always(2.0f * float(part.line_count) * all_lines_px / d);
     }
-    histogram.add_lines(2.0f * float(part.line_count) * all_lines_px,
-                        std::max(all_lines_px, part.line_error_m * projected.pixels_per_meter), all);
+    histogram.add_lines_and_points(2.0f * float(part.line_count) * all_lines_px,
+                                   std::max(all_lines_px, part.line_error_m * per_meter), all, points_at_1px,
+                                   points_from_px);
 }
 
-void add_cloud(BudgetHistogram& histogram, const PackedPart& cloud, std::span<const float> densities,
-               float mean_area_m2, const PlantView& view, const FrameSettings& settings) {
-    const float area_px2 = projected_area_px2(cloud, view, settings.projection);
-    const float mean_px2 = mean_area_m2 * view.pixels_per_meter * view.pixels_per_meter;
-    if (!(area_px2 > 0.0f) || !(mean_px2 > 0.0f)) return;
+void add_cloud(BudgetHistogram& histogram, std::span<const float> densities, float pixels_per_meter,
+               const FrameSettings& settings) {
     // T of the first point not drawn, times d'^2.
-    const float density_at_1px =
-        view.pixels_per_meter * view.pixels_per_meter * settings.splat_factor * area_px2 / mean_px2;
+    const float density_at_1px = settings.splat_factor * pixels_per_meter * pixels_per_meter;
+    if (!(density_at_1px > 0.0f)) return;
     // From the densest down: each line's slope less the next one's is the weight of the kink between them. Where many
     // points appear at once the line is steep, but no jump.
     float slope_above = 0.0f, density = densities.empty() ? 0.0f : std::min(densities.back(), 1.0e30f);

@@ -51,6 +51,19 @@ class BudgetHistogram {
         bin.most += quantise(most);
         bin.per_length += quantise(wanted_at_1px * power_of_two(-halve(exponent)));
     }
+    // Lines up to d' = points_from_px, and from there points_at_1px / d'^2 (choose_line_points).
+    void add_lines_and_points(float wanted_at_1px, float triangles_below_px, float most, float points_at_1px,
+                              float points_from_px) {
+        if (!(points_at_1px > 0.0f) || !(points_from_px < 1.0e15f))
+            return add_lines(wanted_at_1px, triangles_below_px, most);
+        if (points_from_px <= triangles_below_px)
+            return add_by_area(triangles_below_px * triangles_below_px, points_at_1px, most);
+        add_lines(wanted_at_1px, triangles_below_px, most);
+        int exponent;
+        Bin& bin = bin_of(points_from_px * points_from_px, exponent);
+        bin.per_length += quantise(-wanted_at_1px * power_of_two(-halve(exponent)));
+        bin.per_area += quantise(points_at_1px * power_of_two(-exponent));
+    }
     // weight * min(wanted_at_1px / d'^2, limit): of several, any curve over 1 / d'^2 that is made of straight lines. Requires
     // finite numbers and a limit > 0.
     void add_saturating(float wanted_at_1px, float limit, float weight) {
@@ -135,12 +148,12 @@ void add_part(BudgetHistogram& histogram, const PackedPart& part, const PartProj
               const FrameSettings& settings);
 inline void add_part(BudgetHistogram& histogram, const PackedPart& part, const PlantView& view,
                      const FrameSettings& settings) {
-    add_part(histogram, part, project_part(part, view, settings.projection), settings);
+    add_part(histogram, part, project_part(part, view, settings), settings);
 }
 // What choose_cloud will draw, to 1 %: its points over their density by straight lines between counts a factor of 0.7
 // apart.
-void add_cloud(BudgetHistogram& histogram, const PackedPart& cloud, std::span<const float> densities,
-               float mean_area_m2, const PlantView& view, const FrameSettings& settings);
+void add_cloud(BudgetHistogram& histogram, std::span<const float> densities, float pixels_per_meter,
+               const FrameSettings& settings);
 
 inline constexpr float k_settled_sample_distance = 0.01f;
 
@@ -152,7 +165,8 @@ float settle_sample_distance(float guess_px, SolveAt&& solve_at) {
     constexpr int k_most_passes = 8;
     float at_px = guess_px, found_px = solve_at(at_px);
     float slope = -0.15f;  // of found by at, while unknown: what 10 % of gain an octave give
-    for (int pass = 1; pass < k_most_passes && std::fabs(found_px - at_px) > k_settled_sample_distance * at_px; ++pass) {
+    for (int pass = 1;
+         pass < k_most_passes && std::fabs(found_px - at_px) > k_settled_sample_distance * at_px; ++pass) {
         const float last_at_px = at_px, last_found_px = found_px;
         at_px = std::clamp(at_px + (found_px - at_px) / (1.0f - slope), 0.5f * found_px, 2.0f * found_px);
         found_px = solve_at(at_px);

@@ -1,6 +1,7 @@
 #include "plugins/vegetation/lod/choose_part.h"
 
 #include <algorithm>
+#include "plugins/vegetation/plant/line_points.h"
 
 namespace coppice {
 namespace {
@@ -14,7 +15,9 @@ uint32_t round_by_chance(float count, float chance, uint32_t limit) {
 constexpr float k_least_facing = 0.02f;
 constexpr float k_widest_line_px = 64.0f;  // raster_lines.comp
 
-float sample_distance(const FrameSettings& settings) { return std::max(settings.sample_distance_px, 1.0e-3f); }
+float sample_distance(const FrameSettings& settings) {
+    return std::max(settings.sample_distance_px, 1.0e-3f);
+}
 
 float line_sample_distance(const FrameSettings& settings) {
     return settings.line_sample_distance_px > 0.0f ? std::max(settings.line_sample_distance_px, 1.0e-3f)
@@ -86,25 +89,49 @@ PartChoice choose_lines(const PackedPart& part, float projected_area_px2, float 
     return choice;
 }
 
-PartChoice choose_cloud(const PackedPart& cloud, std::span<const float> densities, float mean_area_m2,
-                        const PlantView& view, float depth_m, float nearest_pixels_per_meter,
-                        const FrameSettings& settings) {
+float line_points_at_1px(const PackedPart& part, float pixels_per_meter, const FrameSettings& settings) {
+    if (settings.projection != ProjectionMode::measured || !settings.weigh_by_facing) return 0.0f;
+    const float area_px2 = mean_projected_area_m2(part) * pixels_per_meter * pixels_per_meter;
+    const float length_px = mean_projected_length_m(part) * pixels_per_meter;
+    if (!(area_px2 > 0.0f) || !(length_px > 0.0f)) return 0.0f;
+    return settings.splat_factor * part.importance * area_px2 *
+           gain_at(part, area_px2 / (length_px * sample_distance(settings)));
+}
+
+float line_points_from_px(const PackedPart& part, float points_at_1px, float pixels_per_meter) {
+    constexpr float k_few_points = 8.0f;
+    if (part.line_count == 0 || !(points_at_1px > 0.0f)) return INFINITY;
+    return std::min(part.line_length_m / float(part.line_count) * pixels_per_meter,
+                    std::sqrt(points_at_1px / k_few_points));
+}
+
+PartChoice choose_line_points(const PackedPart& part, float points_at_1px, const FrameSettings& settings,
+                              float chance) {
     PartChoice choice;
-    const float area_px2 = projected_area_px2(cloud, view, settings.projection);
-    const float mean_px2 = mean_area_m2 * view.pixels_per_meter * view.pixels_per_meter;
-    if (!(area_px2 > 0.0f) || !(mean_px2 > 0.0f)) return choice;
     const float d = sample_distance(settings);
-    const float per_meter = view.pixels_per_meter / d, nearest_per_meter = nearest_pixels_per_meter / d;
-    const float from_here = settings.splat_factor * area_px2 / mean_px2;  // from this side, over the mean
+    choice.points = round_by_chance(points_at_1px / (d * d), chance, line_point_count(part));
+    choice.splat_px = d / std::sqrt(part.importance);
+    choice.density_limit_m2 = INFINITY;
+    weigh_by_facing(choice, 0.5f, settings);
+    return choice;
+}
+
+PartChoice choose_cloud(std::span<const float> densities, float pixels_per_meter, float depth_m,
+                        float nearest_pixels_per_meter, const FrameSettings& settings) {
+    PartChoice choice;
+    const float d = sample_distance(settings);
+    auto density_at = [&](float per_meter_px) {
+        return settings.splat_factor * (per_meter_px / d) * (per_meter_px / d);
+    };
     auto count_up_to = [densities](float density) {
         return uint32_t(std::upper_bound(densities.begin(), densities.end(), density) - densities.begin());
     };
-    choice.points = count_up_to(nearest_per_meter * nearest_per_meter * from_here);
-    choice.skipped_points =
-        choice.points - std::min(choice.points, count_up_to(per_meter * per_meter * from_here));
-    choice.density_limit_m2 = per_meter * per_meter * from_here * depth_m * depth_m;
+    const float density = density_at(pixels_per_meter);
+    choice.points = count_up_to(density_at(nearest_pixels_per_meter));
+    choice.skipped_points = choice.points - std::min(choice.points, count_up_to(density));
+    choice.density_limit_m2 = depth_m > 0.0f ? density * depth_m * depth_m : INFINITY;
     choice.splat_px = d;  // the squares of p = c_p A' / d'^2 points add up to c_p A'
-    weigh_by_facing(choice, mean_facing(cloud, area_px2, view.pixels_per_meter), settings);
+    weigh_by_facing(choice, 0.5f, settings);
     return choice;
 }
 
@@ -133,8 +160,18 @@ PartChoice choose_part(const PackedPart& part, const PartProjection& projected, 
                        float chance) {
     if (!settings.level_of_detail) return all_triangles(part);
     const float area_px2 = gained_area_px2(part, projected, settings);
-    if (part.kind == PackedPartKind::lines)
-        return choose_lines(part, area_px2, projected.length_px, projected.pixels_per_meter, settings, chance);
+    if (part.kind == PackedPartKind::lines) {
+        const PartChoice lines =
+            choose_lines(part, area_px2, projected.length_px, projected.pixels_per_meter, settings, chance);
+        if (lines.triangles > 0) return lines;
+        // Each plant goes over at a d' of its own.
+        const float turn = chance * 256.0f - std::floor(chance * 256.0f);
+        const float points_at_1px = line_points_at_1px(part, projected.pixels_per_meter, settings);
+        const float from_px = line_points_from_px(part, points_at_1px, projected.pixels_per_meter);
+        return line_sample_distance(settings) * (0.75f + 0.5f * turn) < from_px
+                   ? lines
+                   : choose_line_points(part, points_at_1px, settings, chance);
+    }
     PartChoice choice = choose_points(part, area_px2, settings, chance);
     weigh_by_facing(choice, mean_facing(part, projected.area_px2, projected.pixels_per_meter), settings);
     return choice;
@@ -150,9 +187,12 @@ bool draws_triangles(const PackedPart& part, const PartProjection& projected, co
 
 float widest_spread_px(float least_importance, float most_line_width, const FrameSettings& settings) {
     if (!settings.level_of_detail) return 0.0f;
-    // choose_points: a part's last points cover up to 1.5 times the square of d' over importance.
-    const float splat_px = sample_distance(settings) * std::sqrt(1.5f / (least_importance * (settings.weigh_by_facing ? k_least_facing : 1.0f)));
-    const float line_px = std::min(1.4143f * line_sample_distance(settings) / least_importance * most_line_width, k_widest_line_px);
+    // choose_points: a part's last points cover up to 1.5 times the square of d' over importance; those of lines are as
+    // large as these are wide. Half of that is seen in the mean over directions.
+    const float share = std::max(1.5f, most_line_width) * (settings.weigh_by_facing ? 2.0f : 1.0f);
+    const float splat_px = sample_distance(settings) * std::sqrt(share / least_importance);
+    const float line_px = std::min(
+        1.4143f * line_sample_distance(settings) / least_importance * most_line_width, k_widest_line_px);
     return 0.5f * std::max(splat_px, line_px);
 }
 

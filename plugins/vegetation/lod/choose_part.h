@@ -22,8 +22,8 @@ struct PartChoice {
     // Splats are sized by |n . v|, whose mean this is; splat_px is of a point that faces the viewer. 0: all are of one
     // size.
     float mean_facing = 0.0f;
-    // Of a cloud: drawn are those of `points` whose density T, times the square of their distance along the view in m,
-    // is at most this; 0: all.
+    // Of points that carry a density and a size (plant/line_points.h): drawn are those of `points` whose density T, times
+    // the square of their distance along the view in m, is at most this. 0: others, which are of one size.
     float density_limit_m2 = 0.0f;
 };
 
@@ -41,20 +41,27 @@ PartChoice choose_points(const PackedPart& part, float projected_area_px2, const
 PartChoice choose_lines(const PackedPart& part, float projected_area_px2, float projected_length_px,
                         float pixels_per_meter, const FrameSettings& settings, float chance);
 
-// Points that stand for a whole tile: at each place those whose density is at most what it asks for at its own distance,
-// which are those the plants would draw there. densities: of the cloud's points, ascending; mean_area_m2: its projected
-// area in the mean over directions, which densities are meant for; view: of the tile's centre, depth_m along the view;
-// nearest_pixels_per_meter >= the view's.
-PartChoice choose_cloud(const PackedPart& cloud, std::span<const float> densities, float mean_area_m2,
-                        const PlantView& view, float depth_m, float nearest_pixels_per_meter,
-                        const FrameSettings& settings);
+// Points that stand for a part's lines (plant/line_points.h), where those are shorter than d', and so wider than long, or
+// where few points would do: a whole trunk for every third plant is worse than a third of it for each. As many as a part of
+// points would draw, times d'^2; 0 where splats are not sized by |n . v|.
+float line_points_at_1px(const PackedPart& part, float pixels_per_meter, const FrameSettings& settings);
+// The d' from which on they do; each plant has its own within a quarter of that.
+float line_points_from_px(const PackedPart& part, float points_at_1px, float pixels_per_meter);
+PartChoice choose_line_points(const PackedPart& part, float points_at_1px, const FrameSettings& settings,
+                              float chance);
 
-// The whole decision for one part; projected by settings.projection.
+// Points that stand for a whole tile: at each place those whose density is at most what it asks for at its own distance,
+// which are those the plants would draw there. densities: of the cloud's points, ascending (eco/make_cloud.h);
+// pixels_per_meter: at the tile's centre, depth_m along the view; nearest_pixels_per_meter >= that.
+PartChoice choose_cloud(std::span<const float> densities, float pixels_per_meter, float depth_m,
+                        float nearest_pixels_per_meter, const FrameSettings& settings);
+
+// The whole decision for one part; projected with the settings.
 PartChoice choose_part(const PackedPart& part, const PartProjection& projected, const FrameSettings& settings,
                        float chance);
 inline PartChoice choose_part(const PackedPart& part, const PlantView& view, const FrameSettings& settings,
                               float chance) {
-    return choose_part(part, project_part(part, view, settings.projection), settings, chance);
+    return choose_part(part, project_part(part, view, settings), settings, chance);
 }
 
 // Whether the part's points or lines do not suffice, so that choose_part draws triangles. Not of one without levels of

@@ -17,9 +17,14 @@ float projected_length_px(const PackedPart& part, const PlantView& view, Project
     return share * part.line_length_m * view.pixels_per_meter;
 }
 
-PartProjection project_part(const PackedPart& part, const PlantView& view, ProjectionMode mode) {
-    return {view.pixels_per_meter, projected_area_px2(part, view, mode),
-            part.kind == PackedPartKind::lines ? projected_length_px(part, view, mode) : 0.0f};
+PartProjection project_part(const PackedPart& part, const PlantView& view, const FrameSettings& settings) {
+    const float per_meter = view.pixels_per_meter;
+    if (part.kind == PackedPartKind::lines)
+        return {per_meter, projected_area_px2(part, view, settings.projection),
+                projected_length_px(part, view, settings.projection)};
+    if (settings.projection == ProjectionMode::measured && settings.weigh_by_facing)
+        return {per_meter, mean_projected_area_m2(part) * (per_meter * per_meter)};
+    return {per_meter, projected_area_px2(part, view, settings.projection)};
 }
 
 }  // namespace coppice

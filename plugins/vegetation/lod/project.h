@@ -25,7 +25,7 @@ inline float pixels_per_meter(float focal_px, float distance_m, float radius_m, 
 // What a part would cover, whatever d'.
 struct PartProjection {
     float pixels_per_meter = 0.0f;
-    float area_px2 = 0.0f;   // A'_p
+    float area_px2 = 0.0f;   // A'_p; of points that which asks for them
     float length_px = 0.0f;  // l'; only of lines
 };
 
@@ -33,7 +33,9 @@ struct PartProjection {
 float projected_area_px2(const PackedPart& part, const PlantView& view, ProjectionMode mode);
 // l' in pixels: length of all its lines.
 float projected_length_px(const PackedPart& part, const PlantView& view, ProjectionMode mode);
-// Both, as the part's kind needs them.
-PartProjection project_part(const PackedPart& part, const PlantView& view, ProjectionMode mode);
+// Both, as the part's kind needs them. Where splats are sized by |n . v| they show of themselves what is seen from here, so
+// points are asked for by the mean area over all directions: walking around a plant takes no point away and adds none, and
+// a tile's cloud, which is made for no direction, has the same points.
+PartProjection project_part(const PackedPart& part, const PlantView& view, const FrameSettings& settings);
 
 }  // namespace coppice

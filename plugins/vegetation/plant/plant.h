@@ -69,6 +69,15 @@ static_assert(sizeof(PackedPart) == 256);
 // The part's coverage gain at a fill > 0, between the levels by (piecewise linear) logarithm. In [0.25, 4].
 float gain_at(const PackedPart& part, float fill);
 
+// What is seen of the part in the mean over all directions, whatever its shape: half its surface, of which a closed one
+// shows half. Of its points, which share that surface out, each shows |n . v| of its share.
+inline float mean_projected_area_m2(const PackedPart& part) {
+    return part.area_m2 * (part.flags & k_part_closed ? 0.25f : 0.5f);
+}
+
+// Of the lines' length likewise: a line of random direction shows pi / 4 of its own (ERRATA 2).
+inline float mean_projected_length_m(const PackedPart& part) { return 0.25f * k_pi * part.line_length_m; }
+
 struct Plant {
     std::string name;
     Box bounds_plant;
@@ -80,15 +89,15 @@ struct Plant {
         point_owners;  // for each point, its triangle's index within the part: the blend draws
                        // triangles [0, t) and the points whose owner is >= t
     std::span<const PackedVertex>
-        line_vertices;               // two a line; the second one's surface is not a surface but the
-                                     // line's own width over the part's mean, as float bits, in (0, 100]
+        line_vertices;  // two a line; the second one's surface is not a surface but the
+                        // line's own width over the part's mean, as float bits, in (0, 100]
     // Octree cells of large parts, part after part: what a viewer near the plant draws in place of the part.
     // They share its triangles out; their points and lines are a choice of the part's before it was cut, in
     // its order, and stand behind all parts'. Such a part itself keeps the points that far views need, and of
     // its triangles, which are sorted by cell, only all can be drawn.
     std::span<const PackedPart> cells;
-    uint32_t dropped_triangles = 0;  // zero area or not finite, left out by the cook
-    uint32_t dropped_vertices = 0;   // used by no triangle
+    uint32_t dropped_triangles = 0;          // zero area or not finite, left out by the cook
+    uint32_t dropped_vertices = 0;           // used by no triangle
     std::shared_ptr<const MappedFile> file;  // keeps the spans alive; or:
     std::shared_ptr<const std::vector<std::byte>> memory;
 };

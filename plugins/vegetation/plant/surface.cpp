@@ -40,7 +40,13 @@ uint32_t encode_surface(const Surface& surface, uint32_t dither) {
     bits |= dither_level(surface.color_linear.z, 31, chance()) << 23;
     float open = std::clamp(surface.openness == surface.openness ? surface.openness : 1.0f, 0.0f, 1.0f);
     bits |= std::min(7u, uint32_t(open * 7.0f + chance())) << 28;
-    return bits | (surface.leaf ? 0x80000000u : 0u);
+    return bits | (surface.leaf ? k_leaf_bit : 0u);
+}
+
+uint32_t replace_normal(uint32_t surface_bits, vec3 normal) {
+    constexpr uint32_t k_normal_bits = 0xfffu;
+    return (surface_bits & ~k_normal_bits) |
+           (encode_surface({normal, vec3(0.0f), 0.0f, false}, 0) & k_normal_bits);
 }
 
 Surface decode_surface(uint32_t bits) {
@@ -56,7 +62,7 @@ Surface decode_surface(uint32_t bits) {
           b = float(bits >> 23 & 31u) / 31.0f;
     surface.color_linear = vec3(r * r, g * g, b * b);
     surface.openness = float(bits >> 28 & 7u) / 7.0f;
-    surface.leaf = (bits & 0x80000000u) != 0;
+    surface.leaf = (bits & k_leaf_bit) != 0;
     return surface;
 }
 

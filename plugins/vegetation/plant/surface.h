@@ -22,6 +22,9 @@ struct Surface {
 // the linear mean of what went in: averages of points and triangles keep their colour (DESIGN 3, "never
 // change the mean").
 uint32_t encode_surface(const Surface& surface, uint32_t dither);
+// Colour, openness and kind keep their bits: coding them anew would dither them once more. normal: not zero.
+uint32_t replace_normal(uint32_t surface_bits, vec3 normal);
+inline constexpr uint32_t k_leaf_bit = 1u << 31;
 Surface decode_surface(uint32_t bits);
 
 }  // namespace coppice

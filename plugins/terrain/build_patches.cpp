@@ -146,16 +146,34 @@ Mean mean_around(const HeightField& field, const GroundSurface& ground, uint32_t
     return mean;
 }
 
-// The nearest color a surface word can hold. What rounding leaves goes to the neighbours (Floyd and
-// Steinberg): chance alone would stain the ground, where the vertices lie metres apart.
-vec3 nearest_color(vec3 color_linear) {
-    vec3 steps(31.0f, 63.0f, 31.0f), out;
-    for (int c = 0; c < 3; ++c) {
-        float coded = std::sqrt(glm::clamp(color_linear[c], 0.0f, 1.0f));
-        float level = std::floor(coded * steps[c] + 0.5f) / steps[c];
-        out[c] = level * level;
-    }
-    return out;
+// A color near `wanted` that a surface word can hold: rather somewhat brighter or darker than of another hue than `color`.
+// What that leaves goes to the neighbours (Floyd and Steinberg): chance alone would stain the ground, where the vertices
+// lie metres apart.
+vec3 nearest_color(vec3 wanted, vec3 color) {
+    const vec3 steps(31.0f, 63.0f, 31.0f);
+    auto value = [&](int c, float level) {
+        float coded = glm::clamp(level / steps[c], 0.0f, 1.0f);
+        return coded * coded;
+    };
+    vec3 below;
+    for (int c = 0; c < 3; ++c)
+        below[c] = std::floor(std::sqrt(glm::clamp(wanted[c], 0.0f, 1.0f)) * steps[c]);
+    constexpr float k_least = 1e-3f;  // of what ratios are taken
+    color = glm::max(color, vec3(k_least));
+    const float brightness = std::max(wanted.x + 3.0f * wanted.y, 4.0f * k_least);
+    vec3 best(0.0f);
+    float best_cost = INFINITY;
+    for (float red : {0.0f, 1.0f})
+        for (float green : {-1.0f, 0.0f, 1.0f, 2.0f})
+            for (float blue : {0.0f, 1.0f}) {
+                const vec3 out(value(0, below.x + red), value(1, below.y + green), value(2, below.z + blue));
+                const vec3 change = glm::max(out, vec3(k_least)) / color;
+                const float redder = change.x / change.y - 1.0f, bluer = change.z / change.y - 1.0f;
+                const float brighter = (out.x + 3.0f * out.y) / brightness - 1.0f;
+                const float cost = redder * redder + 0.15f * bluer * bluer + 0.3f * brighter * brighter;
+                if (cost < best_cost) best_cost = cost, best = out;
+            }
+    return best;
 }
 
 }  // namespace
@@ -262,7 +280,7 @@ void color_vertices(const HeightField& field, const GroundSurface& ground, Terra
                         // On the border nothing is owed: both patches there must come to the same colour.
                         bool border = column == 0 || row == 0 || column + 1 == across || row + 1 == down;
                         vec3 wanted = border ? mean.color : mean.color + owed[at],
-                             color = nearest_color(wanted);
+                             color = nearest_color(wanted, mean.color);
                         vec3 rest = (wanted - color) * (1.0f / 16.0f);
                         if (column + 1 < across) {
                             owed[at + 1] += rest * 7.0f;

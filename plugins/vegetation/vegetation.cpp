@@ -272,7 +272,7 @@ class VegetationSystems final : public Vegetation {
         for (const GroundInView& at : ground_list_.in_view()) {
             const Box& bounds = grounds_[at.ground].bounds;
             const vec3 viewer = vec3(-at.space_camera);
-            if (at.flat || viewer.x < bounds.min.x || viewer.x > bounds.max.x || viewer.z < bounds.min.z ||
+            if (at.coarse_level != k_in_full || viewer.x < bounds.min.x || viewer.x > bounds.max.x || viewer.z < bounds.min.z ||
                 viewer.z > bounds.max.z)
                 continue;
             below = grounds_[at.ground].terrain.get();

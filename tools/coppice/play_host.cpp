@@ -88,9 +88,9 @@ Status PlayHost::load_forest_file(const PlayOptions& options) {
     scene.sample_distance_px = forest_->sample_distance_px;
     plant_count = forest_->rows.empty() ? 0 : forest_->rows.front().plant_count;
     if (!options.path.empty()) {
-        const auto& grounds = forest_->grounds;
-        COPPICE_TRY(scene.camera_path,
-                    load_camera_path(options.path, grounds.empty() ? nullptr : grounds[0].terrain.get()));
+        COPPICE_TRY(scene.camera_path, load_camera_path(options.path, [this](double x, double z) {
+                        return ground_height(*forest_, x, z);
+                    }));
     }
     load.scene_ms = clock.ms();
     return {};

@@ -275,25 +275,36 @@ Status write_ninja(const Whole& whole, const std::string& file) {
     return {};
 }
 
-Status run(const PopulateCommand& command) {
-    Registry registry;
-    Whole whole{command.settings, {}, {}, registry};
+Status read_whole(Whole& whole) {
     PopulateSettings& settings = whole.settings;
     if (!settings.scene.ends_with(".json"))
         return fail(ErrorId::usage, settings.scene, "", "not a scene", "name an *.eco.json file");
+    Registry& registry = whole.registry;
     for (const char* name : {"terrain", "modeller"}) COPPICE_CHECK(registry.load(name));
     settings.terrain = registry.find<TerrainInterface>(k_terrain_interface, k_terrain_version);
     settings.modeller = registry.find<ModellerInterface>(k_modeller_interface, k_modeller_version);
-    {
-        OpenedFiles opened;
-        COPPICE_TRY(whole.tree, read_mosaic_tree(settings.scene));
-        whole.authored = opened.paths();
-    }
+    OpenedFiles opened;
+    COPPICE_TRY(whole.tree, read_mosaic_tree(settings.scene));
+    whole.authored = opened.paths();
+    return {};
+}
+
+Status run(const PopulateCommand& command) {
+    Registry registry;
+    Whole whole{command.settings, {}, {}, registry};
+    COPPICE_CHECK(read_whole(whole));
     if (!command.ninja.empty()) return write_ninja(whole, command.ninja);
     return command.only.empty() ? make_everything(whole) : make_one(whole, command.only);
 }
 
 }  // namespace
+
+Status populate(const PopulateSettings& settings) {
+    Registry registry;
+    Whole whole{settings, {}, {}, registry};
+    COPPICE_CHECK(read_whole(whole));
+    return make_everything(whole);
+}
 
 void add_populate(CLI::App& app, Command& chosen) {
     auto command = std::make_shared<PopulateCommand>();

@@ -71,4 +71,7 @@ PopulateSettings settings_of(const PopulateSettings& settings, const MosaicNode&
 // scene.json of a mosaic in the tree of settings.scene, from those of the scenes it consists of.
 Result<Outcome> make_mosaic(const PopulateSettings& settings, const MosaicTree& tree, const MosaicNode& node);
 
+// populate.cpp: all pieces of settings.scene, a scene or a mosaic, with progress; what is there and sound is kept.
+Status populate(const PopulateSettings& settings);
+
 }  // namespace coppice

@@ -28,10 +28,11 @@ uint64_t expand_grounds(std::span<const GroundInView> in_view, const SceneGeomet
     uint64_t triangles = 0;
     for (const GroundInView& at : in_view) {
         const DrawGround& ground = geometry.grounds[at.ground];
-        if (at.flat) {
-            work.add_ground(ground.first_flat_vertex, 2,
+        if (at.coarse_level != k_in_full) {
+            const CoarseGround::Level& level = ground.coarse_levels[at.coarse_level];
+            work.add_ground(ground.first_coarse_vertex + level.first_vertex, level.vertex_count / 3,
                             work.add_instance(instance_of(mat3(1.0f), 1.0f, vec3(at.space_camera))));
-            triangles += 2;
+            triangles += level.vertex_count / 3;
         } else if (ground.terrain) {
             triangles += expand_terrain(*ground.terrain,
                                         vec3(ground.terrain->origin_world() + at.space_camera),

@@ -53,13 +53,25 @@ CloudView view_of(const CloudTile& tile, const Frustum& frustum) {
             focal_px / std::max(tile.nearest_m, frustum.near_m)};
 }
 
+// Of the points that are drawn at most, where the cloud stands in for what is not in memory.
+std::span<const float> drawable_densities(const CloudTile& tile, const DrawCloud& cloud,
+                                          const CloudView& seen, const FrameSettings& settings) {
+    const float farness = seen.pixels_per_meter / seen.nearest_pixels_per_meter;
+    const float most = tile.finest_density * farness * farness * settings.splat_factor;
+    const std::span<const float> all = cloud.densities;
+    return most == most ? all.first(size_t(std::upper_bound(all.begin(), all.end(), most) - all.begin()))
+                        : all;
+}
+
 }  // namespace
 
 void measure_clouds(std::span<const CloudTile> tiles, const SceneGeometry& geometry, const Frustum& frustum,
                     const FrameSettings& settings, BudgetHistogram& histogram) {
     for (const CloudTile& tile : tiles) {
         const DrawCloud& cloud = geometry.clouds[tile.cloud];
-        add_cloud(histogram, cloud.densities, view_of(tile, frustum).pixels_per_meter, settings);
+        const CloudView seen = view_of(tile, frustum);
+        add_cloud(histogram, drawable_densities(tile, cloud, seen, settings), seen.pixels_per_meter,
+                  settings);
     }
 }
 

@@ -20,18 +20,6 @@ void add_line_points(const Plant& plant, const PackedPart& part, SceneGeometry& 
     }
 }
 
-constexpr uint32_t k_flat_vertices = 6;
-
-// Two triangles over the ground's bounds, at its lowest height, so that nothing that stands on it is below.
-std::array<PackedVertex, k_flat_vertices> flat_square(const Ground& ground) {
-    const uint32_t surface =
-        encode_surface({vec3(0.0f, 1.0f, 0.0f), ground.mean_color_linear, 1.0f, false}, 1u << 31);
-    const Box& b = ground.bounds;
-    auto corner = [&](float x, float z) { return PackedVertex{x, b.min.y, z, surface}; };
-    const PackedVertex low = corner(b.min.x, b.min.z), high = corner(b.max.x, b.max.z);
-    return {low, corner(b.min.x, b.max.z), high, low, high, corner(b.max.x, b.min.z)};
-}
-
 }  // namespace
 
 void set_cloud(SceneGeometry& geometry, uint32_t index, const TileCloud& cloud) {
@@ -54,7 +42,7 @@ Result<SceneGeometry> gather_geometry(const GeometrySource& source) {
     const uint64_t reserved = uint64_t(source.streamed_clouds) * k_cloud_points;
     uint64_t vertex_count = 0, owner_count = 0;
     for (const Ground& ground : source.grounds)
-        vertex_count += k_flat_vertices + (ground.terrain ? ground.terrain->vertices().size() : 0);
+        vertex_count += ground.coarse.vertices.size() + (ground.terrain ? ground.terrain->vertices().size() : 0);
     for (const Plant& plant : plants) {
         vertex_count += plant.triangle_vertices.size() + plant.points.size() + plant.line_vertices.size();
         owner_count += plant.point_owners.size();
@@ -136,7 +124,8 @@ Result<SceneGeometry> gather_geometry(const GeometrySource& source) {
         DrawGround drawn;
         drawn.terrain = ground.terrain;
         if (ground.terrain) drawn.first_vertex = append(ground.terrain->vertices());
-        drawn.first_flat_vertex = append(flat_square(ground));
+        drawn.first_coarse_vertex = append(ground.coarse.vertices);
+        drawn.coarse_levels = ground.coarse.levels;
         geometry.grounds.push_back(drawn);
     }
     geometry.reserved_points = uint32_t(reserved);

@@ -39,7 +39,8 @@ struct DrawCloud {
 // A ground's place in the geometry buffer.
 struct DrawGround {
     std::shared_ptr<const Terrain> terrain;  // may be null
-    uint32_t first_vertex = 0, first_flat_vertex = 0;
+    uint32_t first_vertex = 0, first_coarse_vertex = 0;
+    std::vector<CoarseGround::Level> coarse_levels;
 };
 
 struct SceneGeometry {

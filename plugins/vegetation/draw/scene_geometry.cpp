@@ -27,7 +27,8 @@ Result<SceneGeometry> gather_geometry(const GeometrySource& source) {
     const uint64_t reserved = uint64_t(source.streamed_clouds) * k_cloud_points;
     uint64_t vertex_count = 0, owner_count = 0;
     for (const Ground& ground : source.grounds)
-        vertex_count += ground.coarse.vertices.size() + (ground.terrain ? ground.terrain->vertices().size() : 0);
+        vertex_count +=
+            ground.coarse.vertices.size() + (ground.terrain ? ground.terrain->vertices().size() : 0);
     for (const Plant& plant : plants) {
         vertex_count += plant.triangle_vertices.size() + plant.points.size() + plant.line_vertices.size();
         owner_count += plant.point_owners.size();
@@ -57,8 +58,8 @@ Result<SceneGeometry> gather_geometry(const GeometrySource& source) {
         constexpr float k_slack = 1.001f;  // rounding
         model.foot_radius_m = k_slack * (glm::length(model.center_plant) + model.radius_m);
         for (size_t line_end = 1; line_end < plant.line_vertices.size(); line_end += 2)
-            geometry.most_line_width =
-                std::max(geometry.most_line_width, std::bit_cast<float>(plant.line_vertices[line_end].surface));
+            geometry.most_line_width = std::max(geometry.most_line_width,
+                                                std::bit_cast<float>(plant.line_vertices[line_end].surface));
         model.first_part = uint32_t(geometry.parts.size());
         model.part_count = uint32_t(plant.parts.size());
         uint32_t first_triangle_vertex = append(plant.triangle_vertices);

@@ -64,7 +64,7 @@ struct SceneGeometry {
 };
 
 struct GeometrySource {
-    std::string path;                      // for messages
+    std::string path;  // for messages
     std::span<const SceneModel> models;
     std::span<const Plant> plants;         // plants[i] belongs to models[i]
     std::vector<const TileCloud*> clouds;  // always drawable

@@ -63,7 +63,8 @@ class VegetationSystems final : public Vegetation {
         return add_tiles(scene, tree);
     }
 
-    Status set_world(TileForest forest, std::vector<Plant> plants, const ResidencySettings& settings) override {
+    Status set_world(TileForest forest, std::vector<Plant> plants,
+                     const ResidencySettings& settings) override {
         if (plants.size() != forest.models.size())
             return fail(ErrorId::value_out_of_range, forest.path, "plants",
                         std::to_string(plants.size()) + " packed plants",
@@ -76,8 +77,7 @@ class VegetationSystems final : public Vegetation {
         COPPICE_CHECK(show(std::move(geometry), std::move(grounds), forest.light));
         COPPICE_CHECK(add_rows(forest));
         if (!forest.packs.empty())
-            residency_ =
-                std::make_unique<TileResidency>(forest, settings, uint32_t(forest.clouds.size()));
+            residency_ = std::make_unique<TileResidency>(forest, settings, uint32_t(forest.clouds.size()));
         return {};
     }
 
@@ -154,8 +154,9 @@ class VegetationSystems final : public Vegetation {
         for (size_t r = 0; r < forest.rows.size(); ++r) {
             const ForestRow& row = forest.rows[r];
             tiles[r] = {row.origin, row.bounds_tile, row.plant_count};
-            levels[r] = {row.cloud,          row.first_child,           row.child_count,   row.target,
-                         row.finest_density, row.pack != k_no_row ? 1u : 0u, row.triangle_count};
+            levels[r] = {row.cloud,         row.first_child,    row.child_count,
+                         row.target,        row.finest_density, row.pack != k_no_row ? 1u : 0u,
+                         row.triangle_count};
         }
         scene_triangles_ = levels[0].triangle_count;
         return {};
@@ -171,8 +172,13 @@ class VegetationSystems final : public Vegetation {
         for (size_t row = tree.size(); row-- > 0;) {  // children before their parents
             const TileNode& node = tree[row];
             tiles[row] = {node.origin_world, node.bounds_tile, node.plant_count};
-            levels[row] = {uint32_t(row),       node.first_child,             node.child_count,
-                           TileLevels::k_none, node.cloud.finest_density(), 0, 0};
+            levels[row] = {uint32_t(row),
+                           node.first_child,
+                           node.child_count,
+                           TileLevels::k_none,
+                           node.cloud.finest_density(),
+                           0,
+                           0};
             for (uint32_t child = 0; child < node.child_count; ++child)
                 levels[row].triangle_count += levels[node.first_child + child].triangle_count;
             if (node.child_count > 0) continue;
@@ -223,7 +229,8 @@ class VegetationSystems final : public Vegetation {
         report_.rested_frames = rested_;
         // At rest d' falls from what the moving view's budget left it.
         FrameSettings rested_from = frame_;
-        if (rested_ > 0) rested_from.sample_distance_px = std::max(frame_.sample_distance_px, last_solved_px_);
+        if (rested_ > 0)
+            rested_from.sample_distance_px = std::max(frame_.sample_distance_px, last_solved_px_);
         resting_ = resting_frame(rested_, rested_from);
         drawn_ = frame_;
         drawn_.sample_distance_px = resting_.sample_distance_px;
@@ -237,7 +244,8 @@ class VegetationSystems final : public Vegetation {
         if (!frame_.level_of_detail || rested_ > 0 || (frame_.vertex_budget == 0 && !by_time)) return 0;
         uint64_t budget = frame_.vertex_budget > 0 ? frame_.vertex_budget : UINT64_MAX;
         if (by_time)
-            budget = std::min(budget, cost_.vertex_budget_for(double(frame_.time_budget_ms), counts_of(report_)));
+            budget =
+                std::min(budget, cost_.vertex_budget_for(double(frame_.time_budget_ms), counts_of(report_)));
         return std::max<uint64_t>(budget, 1);
     }
 
@@ -272,8 +280,8 @@ class VegetationSystems final : public Vegetation {
         for (const GroundInView& at : ground_list_.in_view()) {
             const Box& bounds = grounds_[at.ground].bounds;
             const vec3 viewer = vec3(-at.space_camera);
-            if (at.coarse_level != k_in_full || viewer.x < bounds.min.x || viewer.x > bounds.max.x || viewer.z < bounds.min.z ||
-                viewer.z > bounds.max.z)
+            if (at.coarse_level != k_in_full || viewer.x < bounds.min.x || viewer.x > bounds.max.x ||
+                viewer.z < bounds.min.z || viewer.z > bounds.max.z)
                 continue;
             below = grounds_[at.ground].terrain.get();
             camera_space = -at.space_camera;
@@ -309,9 +317,9 @@ class VegetationSystems final : public Vegetation {
         const Horizon* horizon = horizon_.empty() ? nullptr : &horizon_;
         const float spread_px =
             k_slack * widest_spread_px(geometry_.least_importance, geometry_.most_line_width, drawn_);
-        tile_list_.list(tiles, plants, frustum_, camera_.position_world,
-                        {drawn_.level_of_detail ? drawn_.sample_distance_px : 0.0f, motion_m_, horizon,
-                         spread_px});
+        tile_list_.list(
+            tiles, plants, frustum_, camera_.position_world,
+            {drawn_.level_of_detail ? drawn_.sample_distance_px : 0.0f, motion_m_, horizon, spread_px});
         frame_plants_.see(tile_list_, geometry_, frustum_, drawn_, horizon, spread_px);
     }
 
@@ -325,9 +333,8 @@ class VegetationSystems final : public Vegetation {
                 if (listed_px_ != at_px) list(tiles, plants);
                 const BudgetHistogram& measured =
                     frame_plants_.measure(tile_list_, geometry_, frustum_, drawn_);
-                const float found_px =
-                    solve_sample_distance(measured, 0, budget_, frame_.sample_distance_px,
-                                          frame_.most_sample_distance_px);
+                const float found_px = solve_sample_distance(measured, 0, budget_, frame_.sample_distance_px,
+                                                             frame_.most_sample_distance_px);
                 vertices = vertices_at(measured, found_px);
                 return found_px;
             });
@@ -352,8 +359,8 @@ class VegetationSystems final : public Vegetation {
         // The first part is the terrain's: should memory run out, the ground stays. The last one is the clouds'.
         work_.begin(run_count + 2);
         frame_plants_.draw(tile_list_, geometry_, frustum_, drawn_, resting_.index, work_, 1);
-        report_.terrain_triangles =
-            expand_grounds(ground_list_.in_view(), geometry_, frustum_, ground_error_px(drawn_), work_.part(0));
+        report_.terrain_triangles = expand_grounds(ground_list_.in_view(), geometry_, frustum_,
+                                                   ground_error_px(drawn_), work_.part(0));
         if (residency_) residency_->wish(tile_list_.wishes());
         report_.lod_ms = now_ms() - begin;
     }

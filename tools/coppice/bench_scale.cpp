@@ -26,8 +26,8 @@ constexpr uint32_t k_tile_memory_mib = 64;
 // A wood on periodic ground, or a mosaic of the size before it.
 struct Size {
     const char* name;
-    uint32_t side_m;            // of a wood; else 0
-    uint32_t columns, rows;     // of a mosaic
+    uint32_t side_m;         // of a wood; else 0
+    uint32_t columns, rows;  // of a mosaic
     double spacing_x_m, spacing_z_m;
 };
 // Ten times as many triangles each: three woods, all of whose plants differ in place and turn, then ten of the third
@@ -59,8 +59,8 @@ Place viewed_place(size_t index) {
 std::string flight_text(Place at) {
     auto key = [&](double time_s, double forward_m, double above_m) {
         return fmt::format(
-            R"({{"time_s": {}, "at": [{}, {}], "above_m": {}, "look_at": [{}, {}], "look_above_m": {}}})", time_s,
-            at.x, at.z - forward_m, above_m, at.x, at.z - forward_m - 80.0, 0.7 * above_m);
+            R"({{"time_s": {}, "at": [{}, {}], "above_m": {}, "look_at": [{}, {}], "look_above_m": {}}})",
+            time_s, at.x, at.z - forward_m, above_m, at.x, at.z - forward_m - 80.0, 0.7 * above_m);
     };
     return fmt::format("[{}, {}, {}]", key(0, 0, 1.7), key(3, 20, 12), key(6, 60, 60));
 }
@@ -88,8 +88,8 @@ std::string wood_text(const Size& size, const std::string& content) {
 "camera_path": {},
 {}}}
 )",
-        scene_name(size), plant("pine", 3, 13), plant("stand_tree", 3, 12), plant("shrub", 2, 1.8), size.side_m,
-        size.side_m, size.side_m, scatter(R"({"pine": 2, "beech": 1})", 0.03, 3.5, 1),
+        scene_name(size), plant("pine", 3, 13), plant("stand_tree", 3, 12), plant("shrub", 2, 1.8),
+        size.side_m, size.side_m, size.side_m, scatter(R"({"pine": 2, "beech": 1})", 0.03, 3.5, 1),
         scatter(R"({"shrub": 1})", 0.02, 2.0, 2), flight_text({}), light_text());
 }
 
@@ -99,12 +99,12 @@ std::string mosaic_text(size_t index) {
     std::string places;
     for (uint32_t row = 0; row < size.rows; ++row)
         for (uint32_t column = 0; column < size.columns; ++column)
-            places += fmt::format(R"({}{{"scene": "{}.eco.json", "at": [{}, {}]}})", places.empty() ? "" : ", ",
-                                  scene_name(k_sizes[index - 1]),
+            places += fmt::format(R"({}{{"scene": "{}.eco.json", "at": [{}, {}]}})",
+                                  places.empty() ? "" : ", ", scene_name(k_sizes[index - 1]),
                                   (column - 0.5 * (size.columns - 1)) * size.spacing_x_m,
                                   (row - 0.5 * (size.rows - 1)) * size.spacing_z_m);
-    return fmt::format("{{\"name\": \"{}\",\n\"mosaic\": [{}],\n\"camera_path\": {},\n{}}}\n", scene_name(size),
-                       places, flight_text(viewed_place(index)), light_text());
+    return fmt::format("{{\"name\": \"{}\",\n\"mosaic\": [{}],\n\"camera_path\": {},\n{}}}\n",
+                       scene_name(size), places, flight_text(viewed_place(index)), light_text());
 }
 
 struct Flight {
@@ -171,17 +171,20 @@ std::string page(const std::vector<Flight>& flights) {
     std::vector<double> all_x, all_y;
     std::string rows;
     for (const Flight& flight : flights) {
-        const double x = double(flight.triangles), ms = median(flight.wall_ms), cpu_ms = median(flight.cpu_ms);
+        const double x = double(flight.triangles), ms = median(flight.wall_ms),
+                     cpu_ms = median(flight.cpu_ms);
         time.points.push_back({x, ms, fmt::format("{}: {:.1f} ms", flight.size->name, ms)});
         cpu.points.push_back({x, cpu_ms, fmt::format("{}: {:.2f} ms on the CPU", flight.size->name, cpu_ms)});
         all_x.push_back(x);
         all_y.insert(all_y.end(), {ms, cpu_ms});
         rows += fmt::format(
-            "<tr><td>{}</td><td>{}</td><td>{:.1f}</td><td>{:.2f}</td><td>{}</td><td>{:.0f}</td><td>{:.0f}</td>"
+            "<tr><td>{}</td><td>{}</td><td>{:.1f}</td><td>{:.2f}</td><td>{}</td><td>{:.0f}</td><td>{:.0f}</"
+            "td>"
             "<td>{:.1f}</td><td>{:.1f}</td><td>{:.1f}</td></tr>\n",
-            short_count(x), short_count(double(flight.plants)), ms, cpu_ms, short_count(median(flight.vertices)),
-            median(flight.tiles_touched), median(flight.plants_visible), double(flight.bytes_read) / 1048576.0,
-            double(flight.resident_bytes) / 1048576.0, double(flight.gpu_bytes) / 1048576.0);
+            short_count(x), short_count(double(flight.plants)), ms, cpu_ms,
+            short_count(median(flight.vertices)), median(flight.tiles_touched), median(flight.plants_visible),
+            double(flight.bytes_read) / 1048576.0, double(flight.resident_bytes) / 1048576.0,
+            double(flight.gpu_bytes) / 1048576.0);
     }
     LogPlotSettings plot;
     plot.label = "Time a frame over triangles of the scene";
@@ -189,10 +192,14 @@ std::string page(const std::vector<Flight>& flights) {
     plot.x = log_range(all_x);
     plot.y = log_range(all_y);
     return fmt::format(
-        "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>Coppice: scale</title><style>{}</style>"
-        "<main><h1>One frame cost, whatever the size</h1><p>{} at 795 x 700, {} vertices a frame, {} MiB of tiles; "
-        "medians of {} flights of {} frames in turns. Milliseconds over triangles: green the whole frame, red the "
-        "CPU's part.</p><div class=\"plot\">{}</div><table><tr><th>triangles</th><th>plants</th><th>frame, ms</th>"
+        "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>Coppice: "
+        "scale</title><style>{}</style>"
+        "<main><h1>One frame cost, whatever the size</h1><p>{} at 795 x 700, {} vertices a frame, {} MiB of "
+        "tiles; "
+        "medians of {} flights of {} frames in turns. Milliseconds over triangles: green the whole frame, "
+        "red the "
+        "CPU's part.</p><div class=\"plot\">{}</div><table><tr><th>triangles</th><th>plants</th><th>frame, "
+        "ms</th>"
         "<th>CPU, ms</th><th>vertices</th><th>tiles touched</th><th>plants looked at</th><th>read, MiB</th>"
         "<th>tiles in memory, MiB</th><th>device memory, MiB</th></tr>\n{}</table></main></html>\n",
         k_page_style, escape_html(flights.front().device), short_count(double(k_vertex_budget)),
@@ -233,8 +240,8 @@ Result<nlohmann::json> bench_scale(const BenchSettings& settings) {
         add("frames with tiles missing", flight.missing_frames, "");
     }
     const Flight &small = flights[1], &large = flights.back();
-    figures.push_back({"time, 1e12 over 1e8", median(large.wall_ms) / median(small.wall_ms), "times", 1.2,
-                       Reach::at_most});
+    figures.push_back(
+        {"time, 1e12 over 1e8", median(large.wall_ms) / median(small.wall_ms), "times", 1.2, Reach::at_most});
     figures.push_back({"device memory, 1e12 over 1e8", double(large.gpu_bytes) / double(small.gpu_bytes),
                        "times", 1.2, Reach::at_most});
     const std::string out = settings.out.empty() ? "out/scale" : settings.out;
@@ -242,7 +249,8 @@ Result<nlohmann::json> bench_scale(const BenchSettings& settings) {
     fmt::print("{}/index.html\n", out);
     nlohmann::json list = nlohmann::json::array();
     for (const Figure& figure : figures) list.push_back(to_json(figure));
-    return nlohmann::json{{"name", "scale"}, {"device", flights.front().device}, {"figures", std::move(list)}};
+    return nlohmann::json{
+        {"name", "scale"}, {"device", flights.front().device}, {"figures", std::move(list)}};
 }
 
 }  // namespace coppice

@@ -79,8 +79,8 @@ Status PlayHost::load_forest_file(const PlayOptions& options) {
                     "name the *.eco.json that it was made from");
     COPPICE_TRY(const uint64_t file_hash, hash_file(file));
     hashes.emplace_back("scene file", file_hash);
-    COPPICE_TRY(forest_, load_forest(file, registry.find<TerrainInterface>(k_terrain_interface,
-                                                                           k_terrain_version)));
+    COPPICE_TRY(forest_,
+                load_forest(file, registry.find<TerrainInterface>(k_terrain_interface, k_terrain_version)));
     scene.name = forest_->name;
     scene.path = forest_->path;
     scene.models = forest_->models;

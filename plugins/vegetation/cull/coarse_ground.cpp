@@ -38,7 +38,8 @@ void gather_colors(const Terrain& terrain, Grid& grid) {
     for (const TerrainPatch& patch : terrain.patches()) {
         if (patch.level_count == 0) continue;
         const TerrainLevel& level = terrain.levels()[patch.first_level + patch.level_count - 1];
-        for (const PackedVertex& vertex : terrain.vertices().subspan(level.first_vertex, level.vertex_count)) {
+        for (const PackedVertex& vertex :
+             terrain.vertices().subspan(level.first_vertex, level.vertex_count)) {
             auto nearest = [&](float at, float from, float step) {
                 return uint32_t(std::clamp((at - from) / step + 0.5f, 0.0f, float(grid.cells)));
             };
@@ -77,9 +78,11 @@ void write_level(const Grid& grid, dvec3 origin, float skirt_m, CoarseGround& gr
     const uint32_t last = grid.cells;
     for (uint32_t k = 0; k < last; ++k) {
         quad(corner(k, 0, 0), corner(k + 1, 0, 0), corner(k + 1, 0, skirt_m), corner(k, 0, skirt_m));
-        quad(corner(k, last, 0), corner(k, last, skirt_m), corner(k + 1, last, skirt_m), corner(k + 1, last, 0));
+        quad(corner(k, last, 0), corner(k, last, skirt_m), corner(k + 1, last, skirt_m),
+             corner(k + 1, last, 0));
         quad(corner(0, k, 0), corner(0, k, skirt_m), corner(0, k + 1, skirt_m), corner(0, k + 1, 0));
-        quad(corner(last, k, 0), corner(last, k + 1, 0), corner(last, k + 1, skirt_m), corner(last, k, skirt_m));
+        quad(corner(last, k, 0), corner(last, k + 1, 0), corner(last, k + 1, skirt_m),
+             corner(last, k, skirt_m));
     }
 }
 
@@ -93,7 +96,8 @@ CoarseGround make_coarse_ground(const Terrain& terrain) {
         Grid grid;
         grid.cells = 1u << l;
         grid.corner = layout.corner_local;
-        grid.step_m = vec2(float(layout.cells_x), float(layout.cells_z)) * (layout.cell_m / float(grid.cells));
+        grid.step_m =
+            vec2(float(layout.cells_x), float(layout.cells_z)) * (layout.cell_m / float(grid.cells));
         for (uint32_t j = 0; j <= grid.cells; ++j)
             for (uint32_t i = 0; i <= grid.cells; ++i)
                 grid.heights.push_back(terrain.height_at(grid.corner.x + grid.step_m.x * float(i),
@@ -120,7 +124,8 @@ CoarseGround make_flat_ground(const Box& bounds, vec3 color_linear) {
     auto corner = [&](float x, float z) { return PackedVertex{x, bounds.min.y, z, surface}; };
     const PackedVertex low = corner(bounds.min.x, bounds.min.z), high = corner(bounds.max.x, bounds.max.z);
     CoarseGround ground;
-    ground.vertices = {low, corner(bounds.min.x, bounds.max.z), high, low, high, corner(bounds.max.x, bounds.min.z)};
+    ground.vertices = {low,  corner(bounds.min.x, bounds.max.z), high, low,
+                       high, corner(bounds.max.x, bounds.min.z)};
     ground.levels.push_back({0, 6, bounds.max.y - bounds.min.y});
     return ground;
 }

@@ -10,13 +10,16 @@ std::vector<Ground> make_grounds(std::shared_ptr<const Terrain> terrain) {
     const vec3 origin = vec3(terrain->origin_world());
     bounds.min += origin;
     bounds.max += origin;
-    return {{std::move(terrain), {}, bounds, {}}};
+    CoarseGround coarse = make_coarse_ground(*terrain);
+    return {{std::move(terrain), {}, bounds, std::move(coarse)}};
 }
 
 std::vector<Ground> make_grounds(const TileForest& forest) {
     std::vector<Ground> grounds;
     for (const ForestGround& of : forest.grounds)
-        grounds.push_back({of.terrain, {}, of.bounds,
+        grounds.push_back({of.terrain,
+                           {},
+                           of.bounds,
                            of.terrain        ? make_coarse_ground(*of.terrain)
                            : of.without_gaps ? make_flat_ground(of.bounds, of.mean_color_linear)
                                              : CoarseGround{}});

@@ -17,7 +17,7 @@ struct Ground {
     };
     std::shared_ptr<const Terrain> terrain;  // null: that of its places
     std::vector<Place> places;
-    Box bounds;  // in its own space
+    Box bounds;           // in its own space
     CoarseGround coarse;  // no levels: only in full
 };
 inline constexpr uint32_t k_in_full = UINT32_MAX;
@@ -29,7 +29,7 @@ std::vector<Ground> make_grounds(const TileForest& forest);
 
 struct GroundInView {
     uint32_t ground;
-    dvec3 space_camera;  // where its space has its origin, from the viewer
+    dvec3 space_camera;     // where its space has its origin, from the viewer
     uint32_t coarse_level;  // of CoarseGround::levels, or k_in_full
 };
 

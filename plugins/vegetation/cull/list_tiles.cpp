@@ -9,9 +9,7 @@ namespace {
 // What will be needed soon comes behind what is needed now.
 constexpr float k_soon_share = 0.25f;
 
-float distance_m(const Box& box, vec3 from) {
-    return glm::length(glm::clamp(from, box.min, box.max) - from);
-}
+float distance_m(const Box& box, vec3 from) { return glm::length(glm::clamp(from, box.min, box.max) - from); }
 
 }  // namespace
 
@@ -84,13 +82,15 @@ void TileList::visit(Pending at, const Frustum& frustum, const Settings& setting
     if (refines_soon && levels.child_count == 0) {
         if (levels.is_streamed) wishes_.push_back({at.row, TileBlockKind::plants, seen.priority});
         refined = at.drawn && !suffices && !plants_of_row_[at.row].positions.empty();
-        if (refined) expanded_.push_back({seen.nearest_m, at.row, seen.inside, seen.origin_camera,
+        if (refined)
+            expanded_.push_back({seen.nearest_m, at.row, seen.inside, seen.origin_camera,
                                  settings.horizon && settings.horizon->hides_some(seen.bounds_camera)});
     } else if (refines_soon) {
         refined = at.drawn && !suffices && all_children_drawable(levels, at, frustum, settings);
         // All that is missing on the way down is wished for at once.
         for (uint32_t i = 0; i < levels.child_count; ++i)
-            pending_.push_back({levels.first_child + i, seen.inside, refined, at.soon || suffices, at.space_camera});
+            pending_.push_back(
+                {levels.first_child + i, seen.inside, refined, at.soon || suffices, at.space_camera});
     }
     if (refined || !at.drawn || levels.cloud == TileLevels::k_none) return;
     stand_in_count += !suffices;
@@ -138,12 +138,10 @@ void TileList::list(const Tiles& tiles, const Plants& plants, const Frustum& fru
         return std::tuple(a.nearest_m, row_a, a.origin_camera.x, a.origin_camera.z) <
                std::tuple(b.nearest_m, row_b, b.origin_camera.x, b.origin_camera.z);
     };
-    std::sort(clouds_.begin(), clouds_.end(), [&](const CloudTile& a, const CloudTile& b) {
-        return by_distance(a, b, a.cloud, b.cloud);
-    });
-    std::sort(expanded_.begin(), expanded_.end(), [&](const ExpandedTile& a, const ExpandedTile& b) {
-        return by_distance(a, b, a.row, b.row);
-    });
+    std::sort(clouds_.begin(), clouds_.end(),
+              [&](const CloudTile& a, const CloudTile& b) { return by_distance(a, b, a.cloud, b.cloud); });
+    std::sort(expanded_.begin(), expanded_.end(),
+              [&](const ExpandedTile& a, const ExpandedTile& b) { return by_distance(a, b, a.row, b.row); });
     make_runs();
 }
 

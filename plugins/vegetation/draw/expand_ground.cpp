@@ -34,9 +34,9 @@ uint64_t expand_grounds(std::span<const GroundInView> in_view, const SceneGeomet
                             work.add_instance(instance_of(mat3(1.0f), 1.0f, vec3(at.space_camera))));
             triangles += level.vertex_count / 3;
         } else if (ground.terrain) {
-            triangles += expand_terrain(*ground.terrain,
-                                        vec3(ground.terrain->origin_world() + at.space_camera),
-                                        ground.first_vertex, frustum, error_px, work);
+            triangles +=
+                expand_terrain(*ground.terrain, vec3(ground.terrain->origin_world() + at.space_camera),
+                               ground.first_vertex, frustum, error_px, work);
         }
     }
     return triangles;

@@ -42,7 +42,8 @@ Result<SceneGeometry> gather_geometry(const GeometrySource& source) {
     const uint64_t reserved = uint64_t(source.streamed_clouds) * k_cloud_points;
     uint64_t vertex_count = 0, owner_count = 0;
     for (const Ground& ground : source.grounds)
-        vertex_count += ground.coarse.vertices.size() + (ground.terrain ? ground.terrain->vertices().size() : 0);
+        vertex_count +=
+            ground.coarse.vertices.size() + (ground.terrain ? ground.terrain->vertices().size() : 0);
     for (const Plant& plant : plants) {
         vertex_count += plant.triangle_vertices.size() + plant.points.size() + plant.line_vertices.size();
         owner_count += plant.point_owners.size();

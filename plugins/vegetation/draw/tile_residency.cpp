@@ -68,8 +68,8 @@ uint32_t TileResidency::find_place(World& world, ChunkId tiles) {
 bool TileResidency::add_cloud(World& world, ChunkId tiles, SceneGeometry& geometry, Rasteriser& rasteriser,
                               uint32_t slot, bool at_once, const FinishedTileBlock& block, uint32_t row) {
     if (block.cloud.points.size() > k_cloud_points) {
-        log_warning("{}: a cloud of {} points; {} are drawn at most", streamer_.packs()[block.block.pack].path,
-                    block.cloud.points.size(), k_cloud_points);
+        log_warning("{}: a cloud of {} points; {} are drawn at most",
+                    streamer_.packs()[block.block.pack].path, block.cloud.points.size(), k_cloud_points);
         return true;  // held, but never drawn
     }
     const uint32_t place = find_place(world, tiles);

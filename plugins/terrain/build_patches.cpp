@@ -104,14 +104,14 @@ void write_level(const Patch& patch, uint32_t step, float skirt_m, Writer writer
         writer.put(c1, r1, skirt_m, lean_m);
         writer.put(c1, r1);
     };
-    for (uint32_t column = patch.column; column < column_end; column += step) {
+    for (uint32_t column = patch.column; column < column_end; column += step)
         hang(column + step, patch.row, column, patch.row, vec2(0, -1));
+    for (uint32_t column = patch.column; column < column_end; column += step)
         hang(column, row_end, column + step, row_end, vec2(0, 1));
-    }
-    for (uint32_t row = patch.row; row < row_end; row += step) {
+    for (uint32_t row = patch.row; row < row_end; row += step)
         hang(patch.column, row, patch.column, row + step, vec2(-1, 0));
+    for (uint32_t row = patch.row; row < row_end; row += step)
         hang(column_end, row + step, column_end, row, vec2(1, 0));
-    }
 }
 
 // The mean over the samples a vertex of spacing `step` stands for: half way to its neighbours on each side.
@@ -196,7 +196,8 @@ TerrainMesh build_patches(const HeightField& field) {
             out.level_count = patch.levels();
             for (uint32_t level = 0; level < out.level_count; ++level) {
                 uint32_t count = level_vertices(patch, 1u << level);
-                mesh.levels.push_back({vertex_count, count, 0.0f});
+                mesh.levels.push_back({vertex_count, count, 6 * (patch.width >> level),
+                                       6 * (patch.height >> level), 0.0f});
                 mesh.vertex_level.push_back(uint8_t(level));
                 vertex_count += count;
             }

@@ -16,10 +16,17 @@ namespace coppice {
 struct PackedVertex;  // plugins/vegetation/plant/plant.h
 
 struct TerrainLevel {
-    uint32_t first_vertex, vertex_count;  // into Terrain::vertices, three a triangle, skirts included
+    // Into Terrain::vertices, three a triangle: the surface, then skirts, which hide what opens to a neighbour of another
+    // level: of the sides of least z and of greatest z, x_skirt_vertex_count each, and of least x and of greatest x.
+    uint32_t first_vertex, vertex_count;
+    uint32_t x_skirt_vertex_count, z_skirt_vertex_count;
     // Largest vertical distance to the full grid; above level 0 at least a tenth of the spacing of the level's
     // vertices, because they carry the ground's colours too.
     float error_m;
+
+    uint32_t surface_vertex_count() const {
+        return vertex_count - 2 * (x_skirt_vertex_count + z_skirt_vertex_count);
+    }
 };
 
 inline constexpr uint32_t k_patch_cells = 32;
@@ -66,7 +73,7 @@ class Terrain {
 };
 
 inline constexpr const char* k_terrain_interface = "coppice.terrain";
-inline constexpr uint32_t k_terrain_version = 3;
+inline constexpr uint32_t k_terrain_version = 4;
 
 struct TerrainInterface {
     uint32_t size_bytes;

@@ -359,8 +359,8 @@ class VegetationSystems final : public Vegetation {
         // The first part is the terrain's: should memory run out, the ground stays. The last one is the clouds'.
         work_.begin(run_count + 2);
         frame_plants_.draw(tile_list_, geometry_, frustum_, drawn_, resting_.index, work_, 1);
-        report_.terrain_triangles = expand_grounds(ground_list_.in_view(), geometry_, frustum_,
-                                                   ground_error_px(drawn_), work_.part(0));
+        report_.terrain_triangles = ground_expander_.expand(ground_list_.in_view(), geometry_, frustum_,
+                                                              ground_error_px(drawn_), work_.part(0));
         if (residency_) residency_->wish(tile_list_.wishes());
         report_.lod_ms = now_ms() - begin;
     }
@@ -459,6 +459,7 @@ class VegetationSystems final : public Vegetation {
     Horizon horizon_;
     TileList tile_list_;
     GroundList ground_list_;
+    GroundExpander ground_expander_;
     FramePlants frame_plants_;
     float listed_px_ = 0.0f;       // d' that the tiles were listed for
     uint64_t budget_ = 0;          // vertices; 0: none

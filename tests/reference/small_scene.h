@@ -18,7 +18,7 @@ class FlatGround : public Terrain {
             bounds_.include(vec3(p.x, 0.0f, p.y));
         }
         patches_ = {{bounds_, 0, 1}};
-        levels_ = {{0, 6, 0.0f}};
+        levels_ = {{0, 6, 0, 0, 0.0f}};
     }
     dvec3 origin_world() const override { return origin_world_; }
     Box bounds_local() const override { return bounds_; }

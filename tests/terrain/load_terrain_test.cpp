@@ -123,12 +123,12 @@ TEST(LoadTerrain, SkirtsCoverTheGapsBetweenLevels) {
     struct Edge {
         std::map<int, std::pair<float, float>> span;  // by place along the edge: top and bottom
     };
-    // Of a patch's border to the east or west: the hanging quads stand in pairs behind those to the north and south.
+    // Of a patch's border to the east or west: the quads that hang there stand behind those to the north and south.
     auto edge_at = [&](const TerrainLevel& level, bool east) {
         Edge edge;
         uint32_t cells = cells_across(level), first = level.first_vertex + 6 * cells * cells + 12 * cells;
         for (uint32_t cell = 0; cell < cells; ++cell) {
-            const PackedVertex* quad = &terrain->vertices()[first + 12 * cell + (east ? 6 : 0)];
+            const PackedVertex* quad = &terrain->vertices()[first + 6 * cell + (east ? 6 * cells : 0)];
             for (auto [top, bottom] : {std::pair(0, 1), std::pair(5, 2)}) {
                 EXPECT_FLOAT_EQ(quad[top].z_plant, quad[bottom].z_plant);
                 EXPECT_EQ(quad[bottom].x_plant > quad[top].x_plant, east);  // leans outwards

@@ -174,7 +174,8 @@ class VegetationSystems final : public Vegetation {
         report_.rested_frames = rested_;
         // At rest d' falls from what the moving view's budget left it.
         FrameSettings rested_from = frame_;
-        if (rested_ > 0) rested_from.sample_distance_px = std::max(frame_.sample_distance_px, last_solved_px_);
+        if (rested_ > 0)
+            rested_from.sample_distance_px = std::max(frame_.sample_distance_px, last_solved_px_);
         resting_ = resting_frame(rested_, rested_from);
         drawn_ = frame_;
         drawn_.sample_distance_px = resting_.sample_distance_px;
@@ -188,7 +189,8 @@ class VegetationSystems final : public Vegetation {
         if (!frame_.level_of_detail || rested_ > 0 || (frame_.vertex_budget == 0 && !by_time)) return 0;
         uint64_t budget = frame_.vertex_budget > 0 ? frame_.vertex_budget : UINT64_MAX;
         if (by_time)
-            budget = std::min(budget, cost_.vertex_budget_for(double(frame_.time_budget_ms), counts_of(report_)));
+            budget =
+                std::min(budget, cost_.vertex_budget_for(double(frame_.time_budget_ms), counts_of(report_)));
         return std::max<uint64_t>(budget, 1);
     }
 
@@ -199,48 +201,53 @@ class VegetationSystems final : public Vegetation {
         frustum_ = make_frustum(camera_, rasteriser_->width(), rasteriser_->height());
         horizon_.build(frame_.occlusion ? terrain_.get() : nullptr, camera_.position_world, frustum_,
                        ground_error_px(drawn_));
-        list(tiles, plants);
+        list(tiles, plants, drawn_.sample_distance_px);
         report_.cull_ms = now_ms() - begin;
     }
 
-    // As d' asks for.
-    void list(const TileList::Tiles& tiles, const TileList::Plants& plants) {
-        constexpr float k_slack = 1.0f + 2.0f * k_settled_sample_distance;  // d' may still change by so much
-        listed_px_ = drawn_.sample_distance_px;
+    // For d' and what is a little coarser.
+    void list(const TileList::Tiles& tiles, const TileList::Plants& plants, float sample_distance_px) {
+        listed_px_ = sample_distance_px;
+        FrameSettings coarsest = drawn_;
+        coarsest.sample_distance_px *= k_list_reach;
+        coarsest.line_sample_distance_px *= k_list_reach;
+        spread_for_px_ = coarsest.sample_distance_px;
         const Horizon* horizon = horizon_.empty() ? nullptr : &horizon_;
         const float spread_px =
-            k_slack * widest_spread_px(geometry_.least_importance, geometry_.most_line_width, drawn_);
+            widest_spread_px(geometry_.least_importance, geometry_.most_line_width, coarsest);
         tile_list_.list(tiles, plants, frustum_, camera_.position_world,
-                        {drawn_.level_of_detail ? drawn_.sample_distance_px : 0.0f, horizon, spread_px});
+                        {drawn_.level_of_detail ? sample_distance_px : 0.0f, horizon, spread_px});
         frame_plants_.see(tile_list_, geometry_, frustum_, drawn_, horizon, spread_px);
     }
 
-    // Which tiles are clouds, what they hide and what plants' gains are depends on d' itself, so it is looked for until
-    // it is what it was found with.
+    // Which tiles are clouds and what plants' gains are depends on d' itself, so it is looked for until it is what it was
+    // found with. Where a tile hands over, the count jumps, and there may be no such d': after a second try tiles are only
+    // listed for finer ones, since plants can be drawn as coarsely as their cloud, but no cloud finer than it is.
     float solve(const TileList::Tiles& tiles, const TileList::Plants& plants) {
+        int passes = 0;
         double vertices = 0.0;
         auto settle = [&] {
             drawn_.sample_distance_px = settle_sample_distance(drawn_.sample_distance_px, [&](float at_px) {
                 drawn_.sample_distance_px = at_px;
-                if (listed_px_ != at_px) list(tiles, plants);
+                if (at_px < listed_px_ || (++passes <= 2 && at_px > listed_px_)) list(tiles, plants, at_px);
                 const BudgetHistogram& measured =
                     frame_plants_.measure(tile_list_, geometry_, frustum_, drawn_);
-                const float found_px =
-                    solve_sample_distance(measured, 0, budget_, frame_.sample_distance_px,
-                                          frame_.most_sample_distance_px);
+                const float found_px = solve_sample_distance(measured, 0, budget_, frame_.sample_distance_px,
+                                                             frame_.most_sample_distance_px);
                 vertices = vertices_at(measured, found_px);
                 return found_px;
             });
         };
         settle();
         const float solved_px = drawn_.sample_distance_px;
-        constexpr double k_tolerance = 0.006;  // of the budget; solve_sample_distance's and rounding
+        constexpr double k_tolerance = 0.006;  // of the budget: solve_sample_distance's and rounding
         if (vertices < (1.0 - k_tolerance) * double(budget_) && solved_px > frame_.sample_distance_px) {
             drawn_.line_sample_distance_px = solved_px;
             settle();
         }
-        if (std::fabs(drawn_.sample_distance_px - listed_px_) > k_settled_sample_distance * listed_px_)
-            list(tiles, plants);
+        // What is hidden was found for splats of a size.
+        if (drawn_.sample_distance_px > spread_for_px_ || drawn_.line_sample_distance_px > spread_for_px_)
+            list(tiles, plants, listed_px_);
         return solved_px;
     }
 
@@ -340,7 +347,9 @@ class VegetationSystems final : public Vegetation {
     Horizon horizon_;
     TileList tile_list_;
     FramePlants frame_plants_;
-    float listed_px_ = 0.0f;       // d' that the tiles were listed for
+    static constexpr float k_list_reach = 1.25f;
+    float listed_px_ = 0.0f,
+          spread_for_px_ = 0.0f;   // d' that the tiles were listed for, and the largest for what is hidden
     uint64_t budget_ = 0;          // vertices; 0: none
     float last_solved_px_ = 1.0f;  // d' of the last frame in which the view moved
     LearnedCost cost_;

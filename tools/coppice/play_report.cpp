@@ -100,7 +100,8 @@ std::string frames_csv(const PlayRecord& record) {
     std::string csv = "frame,time_s,wall_ms,schedule_ms,cull_ms,lod_ms,write_ms";
     for (const std::string& pass : record.passes) csv += ",gpu_" + pass + "_ms";
     csv +=
-        ",sample_distance_px,vertex_budget,vertices,triangles,lines,points,terrain_triangles,full_triangles,tiles_touched,clouds,plants_"
+        ",sample_distance_px,vertex_budget,vertices,triangles,lines,points,terrain_triangles,full_triangles,"
+        "tiles_touched,clouds,plants_"
         "visible,tiles_hidden,plants_hidden,"
         "work_entries,dropped_entries\n";
     for (const FrameRecord& frame : record.frames) {
@@ -109,11 +110,10 @@ std::string frames_csv(const PlayRecord& record) {
                            frame.wall_ms, frame.schedule_ms, report.cull_ms, report.lod_ms, report.write_ms);
         for (double ms : frame.pass_ms) csv += fmt::format(",{:.4f}", ms);
         csv += fmt::format(",{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", report.sample_distance_px,
-                           report.vertex_budget, report.vertices, report.triangles,
-                           report.lines, report.points, report.terrain_triangles, report.full_triangles,
+                           report.vertex_budget, report.vertices, report.triangles, report.lines,
+                           report.points, report.terrain_triangles, report.full_triangles,
                            report.tiles_touched, report.clouds, report.plants_visible, report.tiles_hidden,
-                           report.plants_hidden, report.work_entries,
-                           report.dropped_entries);
+                           report.plants_hidden, report.work_entries, report.dropped_entries);
     }
     return csv;
 }

@@ -57,8 +57,8 @@ void TileList::list(const Tiles& tiles, const Plants& plants, const Frustum& fru
             clouds_.push_back(
                 {levels.cloud, origin, bounds, nearest_m, tile.plant_count, levels.triangle_count});
         else if (levels.child_count == 0)
-            expanded_.push_back({nearest_m, row, inside, origin,
-                                 settings.horizon && settings.horizon->hides_some(bounds)});
+            expanded_.push_back(
+                {nearest_m, row, inside, origin, settings.horizon && settings.horizon->hides_some(bounds)});
         else
             for (uint32_t child = 0; child < levels.child_count; ++child)
                 pending_.push_back({levels.first_child + child, inside});

@@ -73,10 +73,11 @@ void expand_clouds(std::span<const CloudTile> tiles, const SceneGeometry& geomet
         const CloudView seen = view_of(tile, frustum);
         // A tile around the image plane has no depth to go by: all of it is drawn as its nearest place asks for.
         const float depth_m = std::max(glm::dot(frustum.forward, tile.bounds_camera.center()), 0.0f);
-        const PartChoice choice = choose_cloud(cloud.part, cloud.densities, cloud.mean_area_m2, seen.view, depth_m,
-                                               seen.nearest_pixels_per_meter, settings);
+        const PartChoice choice = choose_cloud(cloud.part, cloud.densities, cloud.mean_area_m2, seen.view,
+                                               depth_m, seen.nearest_pixels_per_meter, settings);
         if (choice.points == 0) continue;
-        work.add(cloud.geometry, choice, work.add_instance(instance_of(mat3(1.0f), 1.0f, tile.origin_camera)), turn);
+        work.add(cloud.geometry, choice, work.add_instance(instance_of(mat3(1.0f), 1.0f, tile.origin_camera)),
+                 turn);
     }
 }
 
@@ -90,7 +91,8 @@ uint64_t expand_terrain(const Terrain& terrain, uint32_t first_vertex, dvec3 cam
         Box bounds{patch.bounds_local.min + origin, patch.bounds_local.max + origin};
         if (patch.level_count == 0 || see_box(frustum, bounds) == Visibility::outside) continue;
         const TerrainLevel& level =
-            terrain.levels()[patch.first_level + choose_ground_level(patch, terrain.levels(), bounds, frustum, error_px)];
+            terrain.levels()[patch.first_level +
+                             choose_ground_level(patch, terrain.levels(), bounds, frustum, error_px)];
         work.add_ground(first_vertex + level.first_vertex, level.vertex_count / 3, instance);
         triangles += level.vertex_count / 3;
     }

@@ -13,8 +13,8 @@ void FramePlants::see(const TileList& tiles, const SceneGeometry& geometry, cons
     if (seen_.size() < run_count_) seen_.resize(run_count_);
     parallel_for(run_count_, 1, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; ++i)
-            see_plants(runs[i], geometry, frustum, settings, runs[i].may_be_hidden ? horizon : nullptr, spread_px,
-                       seen_[i]);
+            see_plants(runs[i], geometry, frustum, settings, runs[i].may_be_hidden ? horizon : nullptr,
+                       spread_px, seen_[i]);
     });
 }
 

@@ -38,8 +38,8 @@ Result<SceneGeometry> gather_geometry(const Scene& scene, std::span<const Plant>
         constexpr float k_slack = 1.001f;  // rounding
         model.foot_radius_m = k_slack * (glm::length(model.center_plant) + model.radius_m);
         for (size_t line_end = 1; line_end < plant.line_vertices.size(); line_end += 2)
-            geometry.most_line_width =
-                std::max(geometry.most_line_width, std::bit_cast<float>(plant.line_vertices[line_end].surface));
+            geometry.most_line_width = std::max(geometry.most_line_width,
+                                                std::bit_cast<float>(plant.line_vertices[line_end].surface));
         model.first_part = uint32_t(geometry.parts.size());
         model.part_count = uint32_t(plant.parts.size());
         uint32_t first_triangle_vertex = append(plant.triangle_vertices);

@@ -25,8 +25,8 @@ PlantView view_of(const Frustum& frustum, const mat3& rotation, vec3 center, flo
 class NearView {
   public:
     // Indices into the block, ascending. Requires at most k_plants_a_run plants.
-    std::span<const uint16_t> find(const PlantRun& run, size_t first, size_t count, const SceneGeometry& geometry,
-                                   const Frustum& frustum) {
+    std::span<const uint16_t> find(const PlantRun& run, size_t first, size_t count,
+                                   const SceneGeometry& geometry, const Frustum& frustum) {
         for (size_t i = 0; i < count; ++i) {
             const PlantPosition& place = run.positions[first + i];
             x_[i] = run.origin_camera.x + place.x_tile;
@@ -56,7 +56,8 @@ class NearView {
 
   private:
     float x_[k_plants_a_run], y_[k_plants_a_run], z_[k_plants_a_run];
-    float radius_m_[k_plants_a_run], reach_m_[k_plants_a_run];  // reach: into the view, past the nearest plane
+    float radius_m_[k_plants_a_run],
+        reach_m_[k_plants_a_run];  // reach: into the view, past the nearest plane
     uint16_t found_[k_plants_a_run];
 };
 
@@ -100,8 +101,8 @@ void see_plants(const PlantRun& run, const SceneGeometry& geometry, const Frustu
                 const vec3 at = position + rotation * (sphere.center_plant * place.scale);
                 const float cell_radius_m = sphere.radius_m * place.scale;
                 if (!run.inside && !sees_sphere(frustum, at, cell_radius_m)) continue;
-                add(cell,
-                    view_of(frustum, rotation, center + (at - center) * own_place, cell_radius_m, place.scale));
+                add(cell, view_of(frustum, rotation, center + (at - center) * own_place, cell_radius_m,
+                                  place.scale));
             }
         }
         seen.plants.push_back({instance_of(rotation, place.scale, position), plant_view, model.first_part,

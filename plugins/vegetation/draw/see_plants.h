@@ -27,7 +27,7 @@ struct SeenPlant {
 struct SeenPlants {
     std::vector<SeenPlant> plants;
     std::vector<SeenPart> parts;
-    uint32_t hidden_plants = 0;  // in view, but behind the ground
+    uint32_t hidden_plants = 0;   // in view, but behind the ground
     uint64_t full_triangles = 0;  // had all been drawn
 };
 

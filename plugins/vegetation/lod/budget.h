@@ -152,7 +152,8 @@ float settle_sample_distance(float guess_px, SolveAt&& solve_at) {
     constexpr int k_most_passes = 8;
     float at_px = guess_px, found_px = solve_at(at_px);
     float slope = -0.15f;  // of found by at, while unknown: what 10 % of gain an octave give
-    for (int pass = 1; pass < k_most_passes && std::fabs(found_px - at_px) > k_settled_sample_distance * at_px; ++pass) {
+    for (int pass = 1;
+         pass < k_most_passes && std::fabs(found_px - at_px) > k_settled_sample_distance * at_px; ++pass) {
         const float last_at_px = at_px, last_found_px = found_px;
         at_px = std::clamp(at_px + (found_px - at_px) / (1.0f - slope), 0.5f * found_px, 2.0f * found_px);
         found_px = solve_at(at_px);

@@ -14,7 +14,9 @@ uint32_t round_by_chance(float count, float chance, uint32_t limit) {
 constexpr float k_least_facing = 0.02f;
 constexpr float k_widest_line_px = 64.0f;  // raster_lines.comp
 
-float sample_distance(const FrameSettings& settings) { return std::max(settings.sample_distance_px, 1.0e-3f); }
+float sample_distance(const FrameSettings& settings) {
+    return std::max(settings.sample_distance_px, 1.0e-3f);
+}
 
 float line_sample_distance(const FrameSettings& settings) {
     return settings.line_sample_distance_px > 0.0f ? std::max(settings.line_sample_distance_px, 1.0e-3f)
@@ -134,7 +136,8 @@ PartChoice choose_part(const PackedPart& part, const PartProjection& projected, 
     if (!settings.level_of_detail) return all_triangles(part);
     const float area_px2 = gained_area_px2(part, projected, settings);
     if (part.kind == PackedPartKind::lines)
-        return choose_lines(part, area_px2, projected.length_px, projected.pixels_per_meter, settings, chance);
+        return choose_lines(part, area_px2, projected.length_px, projected.pixels_per_meter, settings,
+                            chance);
     PartChoice choice = choose_points(part, area_px2, settings, chance);
     weigh_by_facing(choice, mean_facing(part, projected.area_px2, projected.pixels_per_meter), settings);
     return choice;
@@ -151,8 +154,11 @@ bool draws_triangles(const PackedPart& part, const PartProjection& projected, co
 float widest_spread_px(float least_importance, float most_line_width, const FrameSettings& settings) {
     if (!settings.level_of_detail) return 0.0f;
     // choose_points: a part's last points cover up to 1.5 times the square of d' over importance.
-    const float splat_px = sample_distance(settings) * std::sqrt(1.5f / (least_importance * (settings.weigh_by_facing ? k_least_facing : 1.0f)));
-    const float line_px = std::min(1.4143f * line_sample_distance(settings) / least_importance * most_line_width, k_widest_line_px);
+    const float splat_px =
+        sample_distance(settings) *
+        std::sqrt(1.5f / (least_importance * (settings.weigh_by_facing ? k_least_facing : 1.0f)));
+    const float line_px = std::min(
+        1.4143f * line_sample_distance(settings) / least_importance * most_line_width, k_widest_line_px);
     return 0.5f * std::max(splat_px, line_px);
 }
 

@@ -73,8 +73,10 @@ class Hills {
             vegetation->set_slot(frame.slot);
             vegetation->set_camera(camera);
             vegetation->set_settings(settings);
+            const size_t before = count_allocations ? count_allocations() : 0;
             schedule_.run();
             graph_.record(frame.commands, frame.timestamps);
+            if (count_allocations) allocations += count_allocations() - before;
             COPPICE_CHECK(ring_.submit());
             COPPICE_CHECK(ring_.wait(frame.serial));
         } while (vegetation->report().dropped_entries > 0);
@@ -86,6 +88,9 @@ class Hills {
         COPPICE_CHECK(gpu::read_now(*device_, buffer, 0, std::as_writable_bytes(std::span(words))));
         return words;
     }
+    // Of the frame's CPU side, from the first system to the last pass recorded, where they can be counted.
+    size_t (*count_allocations)() = nullptr;
+    size_t allocations = 0;
     uint64_t validation_messages() const { return device_->validation_messages(); }
 
   private:

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include "runtime/core/jobs.h"
 
 namespace coppice {
 namespace {
+
+constexpr size_t k_parts_a_job = 16;
 
 size_t lane_bucket(uint32_t count) { return count <= 4 ? 0 : count <= 8 ? 1 : count <= 16 ? 2 : 3; }
 
@@ -23,9 +26,9 @@ WorkInstance instance_of(const mat3& rotation, float scale, vec3 position_camera
 void WorkPart::clear() {
     triangles = lines = points = 0;
     instances_.clear();
-    for (auto& list : groups_) list.clear();
-    for (auto& buckets : lanes_)
-        for (auto& list : buckets) list.clear();
+    entries_.clear();
+    bins_.clear();
+    counts_ = {};
 }
 
 uint32_t WorkPart::add_instance(const WorkInstance& instance) {
@@ -33,20 +36,32 @@ uint32_t WorkPart::add_instance(const WorkInstance& instance) {
     return uint32_t(instances_.size() - 1);
 }
 
+void WorkPart::push(size_t bin, const WorkEntry& entry) {
+    entries_.push_back(entry);
+    bins_.push_back(uint8_t(bin));
+    ++counts_[bin];
+}
+
 void WorkPart::add_run(WorkKind kind, WorkEntry entry, uint32_t vertices_a_primitive) {
     if (entry.count == 0) return;
-    if (entry.count <= k_primitives_a_lane) {
-        lanes_[size_t(kind)][lane_bucket(entry.count)].push_back(entry);
-        return;
-    }
+    const size_t groups = size_t(kind) * k_bins_of_kind;
+    if (entry.count <= k_primitives_a_lane) return push(groups + 1 + lane_bucket(entry.count), entry);
     uint32_t left = entry.count;
     while (left > 0) {
         entry.count = std::min(left, k_primitives_a_group);
-        groups_[size_t(kind)].push_back(entry);
+        push(groups, entry);
         entry.first_vertex += entry.count * vertices_a_primitive;
         entry.first_owner += entry.count;
         left -= entry.count;
     }
+}
+
+WorkPart::BinCounts WorkPart::count_with(uint32_t instance_count) const {
+    if (instance_count >= instances_.size()) return counts_;
+    BinCounts counts{};
+    for (size_t e = 0; e < entries_.size(); ++e)
+        counts[bins_[e]] += (entries_[e].instance & ~k_ground_bit) < instance_count;
+    return counts;
 }
 
 void WorkPart::add_triangles(uint32_t first_vertex, uint32_t count, uint32_t instance, bool cull_back) {
@@ -115,46 +130,56 @@ WorkList::Size WorkList::size() const {
     Size size;
     for (size_t i = 0; i < part_count_; ++i) {
         size.instances += uint32_t(parts_[i].instances_.size());
-        for (const auto& list : parts_[i].groups_) size.entries += uint32_t(list.size());
-        for (const auto& buckets : parts_[i].lanes_)
-            for (const auto& list : buckets) size.entries += uint32_t(list.size());
+        size.entries += uint32_t(parts_[i].entries_.size());
     }
     return size;
 }
 
 WorkList::Layout WorkList::gather(std::span<WorkInstance> instances, std::span<WorkEntry> entries) {
     Layout layout;
-    first_instance_.resize(part_count_);
-    uint32_t wanted_instances = 0;
+    if (places_.size() < part_count_) places_.resize(part_count_);
     for (size_t i = 0; i < part_count_; ++i) {
-        const auto& list = parts_[i].instances_;
-        first_instance_[i] = wanted_instances;
-        size_t room = instances.size() - layout.instance_count;
-        size_t taken = std::min(room, list.size());
-        if (taken) std::memcpy(&instances[layout.instance_count], list.data(), taken * sizeof(WorkInstance));
-        layout.instance_count += uint32_t(taken);
-        wanted_instances += uint32_t(list.size());
+        const size_t room = instances.size() - layout.instance_count;
+        Place& place = places_[i];
+        place.first_instance = layout.instance_count;
+        place.instance_count = uint32_t(std::min(room, parts_[i].instances_.size()));
+        place.next = parts_[i].count_with(place.instance_count);
+        layout.instance_count += place.instance_count;
     }
-    auto append = [&](const std::vector<WorkEntry>& list, size_t part) {
-        for (WorkEntry entry : list) {
-            entry.instance += first_instance_[part];
-            if (layout.entry_count >= entries.size() ||
-                (entry.instance & ~k_ground_bit) >= layout.instance_count) {
-                ++layout.dropped_entries;
-                continue;
-            }
-            entries[layout.entry_count++] = entry;
+    const uint32_t capacity = uint32_t(std::min<size_t>(entries.size(), UINT32_MAX));
+    uint32_t next = 0;
+    for (size_t bin = 0; bin < WorkPart::k_bins; ++bin) {
+        const uint32_t first = std::min(next, capacity);
+        for (size_t i = 0; i < part_count_; ++i) {
+            const uint32_t count = places_[i].next[bin];
+            places_[i].next[bin] = next;
+            next += count;
         }
-    };
-    for (size_t kind = 0; kind < k_work_kinds; ++kind) {
-        layout.groups[kind].first_entry = layout.entry_count;
-        for (size_t i = 0; i < part_count_; ++i) append(parts_[i].groups_[kind], i);
-        layout.groups[kind].entry_count = layout.entry_count - layout.groups[kind].first_entry;
-        layout.lanes[kind].first_entry = layout.entry_count;
-        for (size_t bucket = 0; bucket < k_lane_buckets; ++bucket)
-            for (size_t i = 0; i < part_count_; ++i) append(parts_[i].lanes_[kind][bucket], i);
-        layout.lanes[kind].entry_count = layout.entry_count - layout.lanes[kind].first_entry;
+        const size_t kind = bin / WorkPart::k_bins_of_kind, bucket = bin % WorkPart::k_bins_of_kind;
+        WorkRange& range = bucket == 0 ? layout.groups[kind] : layout.lanes[kind];
+        if (bucket <= 1) range.first_entry = first;
+        range.entry_count += std::min(next, capacity) - first;
     }
+    layout.entry_count = std::min(next, capacity);
+    layout.dropped_entries = size().entries - layout.entry_count;
+
+    parallel_for(part_count_, k_parts_a_job, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; ++i) {
+            const WorkPart& part = parts_[i];
+            Place& place = places_[i];
+            if (place.instance_count > 0)
+                std::memcpy(&instances[place.first_instance], part.instances_.data(),
+                            place.instance_count * sizeof(WorkInstance));
+            for (size_t e = 0; e < part.entries_.size(); ++e) {
+                WorkEntry entry = part.entries_[e];
+                if ((entry.instance & ~k_ground_bit) >= place.instance_count) continue;
+                const uint32_t at = place.next[part.bins_[e]]++;
+                if (at >= capacity) continue;
+                entry.instance += place.first_instance;
+                entries[at] = entry;
+            }
+        }
+    });
     return layout;
 }
 

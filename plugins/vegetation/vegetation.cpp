@@ -1,7 +1,7 @@
 // READ FIRST. Registers the components, systems and passes, in order of execution:
 //
-//   cull    list_tiles      cull/     tiles in view, nearest first, down to those whose clouds suffice
-//   lod     expand_plants   lod/      which primitives of each plant's parts and of clouds; draw/ writes them down, in parallel
+//   cull    list_tiles      cull/     tiles in view, nearest first, down to those whose clouds suffice; draw/ sees their plants
+//   lod     expand_plants   lod/      the budget's d'; which primitives of each plant's parts and of clouds; draw/ writes them down
 //   draw    write_work_list draw/     the jobs' lists, one behind the other, into the mapped buffers
 //   report  count           report/   what was drawn
 //   passes  clear, triangles, big triangles, lines, points ..., resolve: draw/rasteriser.cpp
@@ -298,6 +298,9 @@ class VegetationSystems final : public Vegetation {
         report_.plants = tile_list_.plant_count;
         report_.tiles_hidden = tile_list_.hidden_tile_count;
         report_.cloud_plants = 0;
+        report_.plants_expanded = 0;
+        for (const PlantRun& run : tile_list_.runs())
+            report_.plants_expanded += uint32_t(run.positions.size());
         frame_plants_.count(report_.plants_visible, report_.plants_hidden, report_.full_triangles);
         for (const CloudTile& tile : tile_list_.clouds()) {
             report_.cloud_plants += tile.plant_count;

@@ -71,6 +71,7 @@ TEST(Content, StandsHaveTheirTrees) {
     EXPECT_EQ(load_content("stand_640").positions.size(), 640u);
     EXPECT_EQ(load_content("stand_5000").positions.size(), 5000u);
     EXPECT_EQ(load_content("stand_50000").positions.size(), 50000u);
+    EXPECT_EQ(load_content("thicket_100000").positions.size(), 100000u);
 }
 
 TEST(Content, WoodlandIsMixed) {
@@ -112,8 +113,8 @@ TEST(Content, ViewsGoWithTheirScenes) {
 }
 
 TEST(Content, EverySourceExists) {
-    for (const char* name :
-         {"pines", "woodland", "palms", "sunflowers", "landscape", "stand_640", "stand_5000", "stand_50000"})
+    for (const char* name : {"pines", "woodland", "palms", "sunflowers", "landscape", "stand_640",
+                             "stand_5000", "stand_50000", "thicket_100000"})
         for (const SceneModel& model : load_content(name).models)
             EXPECT_TRUE(std::filesystem::exists(model.source_path)) << model.source_path;
 }

@@ -84,6 +84,8 @@ const std::vector<Bench>& benches() {
          [](const BenchSettings&) { return bench_ecs(); }},
         {"raster", "points, lines and triangles a second of the rasteriser alone",
          [](const BenchSettings& settings) { return bench_raster(settings.device); }},
+        {"frame", "what the CPU does for a frame of 100,000 plants: cull, levels, budget, work list",
+         bench_frame},
         {"pines", "640 pines at 795x700, also with every triangle", bench_pines},
         {"stand", "640, 5,000 and 50,000 trees, against other programs' times", bench_stand},
     };

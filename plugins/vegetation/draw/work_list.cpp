@@ -72,52 +72,43 @@ void WorkPart::add_ground(uint32_t first_vertex, uint32_t triangle_count, uint32
     add_triangles(first_vertex, triangle_count, instance | k_ground_bit, false);
 }
 
+void WorkPart::add_from(WorkKind kind, WorkEntry entry, uint32_t vertices_a_primitive, float start,
+                        uint32_t stored, uint32_t count, bool has_owners) {
+    const uint32_t first = std::min(uint32_t(start * float(stored)), stored);
+    const uint32_t from_start = std::min(count, stored - first);
+    // What is left for the list's beginning, and the run from `start` on.
+    entry.count = count - from_start;
+    add_run(kind, entry, vertices_a_primitive);
+    entry.first_vertex += vertices_a_primitive * first;
+    if (has_owners) entry.first_owner += first;
+    entry.count = from_start;
+    add_run(kind, entry, vertices_a_primitive);
+}
+
 void WorkPart::add(const PartGeometry& geometry, const PartChoice& choice, uint32_t instance, float start) {
-    add_triangles(geometry.first_triangle_vertex, choice.triangles, instance, geometry.cull_back);
-    // The part of a run of `count` from `start` on, and what is left for the list's beginning.
-    auto cut = [start](uint32_t count, uint32_t stored) {
-        uint32_t first = std::min(uint32_t(start * float(stored)), stored);
-        return std::pair(first, std::min(count, stored - first));
-    };
-    auto [first_line, lines_from_start] = cut(choice.lines, geometry.line_count);
-    WorkEntry line{geometry.first_line_vertex,
-                   0,
-                   instance,
-                   0,
-                   choice.line_width_px,
-                   std::bit_cast<uint32_t>(choice.turned_share),
-                   0,
-                   0.0f};
-    line.count = choice.lines - lines_from_start;
-    add_run(WorkKind::lines, line, 2);
-    line.first_vertex += 2 * first_line;
-    line.count = lines_from_start;
-    add_run(WorkKind::lines, line, 2);
-    // A side a rounding error over a whole pixel must not cost four times the pixels.
-    constexpr float k_slack = 1.0e-3f;
-    float side = choice.splat_px;
-    WorkKind kind = choice.point_owner_min > 0 || choice.density_limit_m2 > 0.0f ? WorkKind::points_blend
-                    : side <= 1.0f + k_slack                                     ? WorkKind::points_1
-                    : side <= 2.0f + k_slack                                     ? WorkKind::points_2
-                                                                                 : WorkKind::points_any;
-    auto [first_point, points_from_start] = cut(choice.points, geometry.point_count);
-    WorkEntry point{geometry.first_point,
-                    0,
-                    instance,
-                    geometry.first_owner,
-                    side,
-                    choice.point_owner_min,
-                    std::bit_cast<uint32_t>(choice.density_limit_m2),
-                    choice.mean_facing};
-    point.count = choice.points - points_from_start;
-    add_run(kind, point, 1);
-    point.first_vertex += first_point;
-    point.first_owner += first_point;
-    point.count = points_from_start;
-    add_run(kind, point, 1);
     triangles += choice.triangles;
     lines += choice.lines;
     points += choice.points - choice.skipped_points;
+    if (choice.triangles > 0)
+        add_triangles(geometry.first_triangle_vertex, choice.triangles, instance, geometry.cull_back);
+    if (choice.lines > 0)
+        add_from(WorkKind::lines,
+                 {geometry.first_line_vertex, 0, instance, 0, choice.line_width_px,
+                  std::bit_cast<uint32_t>(choice.turned_share), 0, 0.0f},
+                 2, start, geometry.line_count, choice.lines, false);
+    if (choice.points == 0) return;
+    // A side a rounding error over a whole pixel must not cost four times the pixels.
+    constexpr float k_slack = 1.0e-3f;
+    const float side = choice.splat_px;
+    const WorkKind kind = choice.point_owner_min > 0 || choice.density_limit_m2 > 0.0f
+                              ? WorkKind::points_blend
+                          : side <= 1.0f + k_slack ? WorkKind::points_1
+                          : side <= 2.0f + k_slack ? WorkKind::points_2
+                                                   : WorkKind::points_any;
+    add_from(kind,
+             {geometry.first_point, 0, instance, geometry.first_owner, side, choice.point_owner_min,
+              std::bit_cast<uint32_t>(choice.density_limit_m2), choice.mean_facing},
+             1, start, geometry.point_count, choice.points, true);
 }
 
 void WorkList::begin(size_t part_count) {

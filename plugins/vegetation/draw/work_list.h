@@ -67,6 +67,8 @@ class WorkPart {
     friend class WorkList;
     void add_triangles(uint32_t first_vertex, uint32_t count, uint32_t instance, bool cull_back);
     void add_run(WorkKind kind, WorkEntry entry, uint32_t vertices_a_primitive);
+    void add_from(WorkKind kind, WorkEntry entry, uint32_t vertices_a_primitive, float start, uint32_t stored,
+                  uint32_t count, bool has_owners);
     void push(size_t bin, const WorkEntry& entry);
 
     // Of each kind first the groups, then the lanes' buckets: the order of a layout.

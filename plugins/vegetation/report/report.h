@@ -11,6 +11,7 @@ struct FrameReport {
     uint32_t clouds = 0;          // tiles that one cloud of points stood for
     uint32_t tiles_hidden = 0;    // in view, but behind the ground; with all below them
     uint32_t plants = 0, plants_visible = 0;
+    uint32_t plants_expanded = 0;  // of the tiles that were looked into
     uint32_t plants_hidden = 0;                     // of expanded tiles, in view but behind the ground
     float sample_distance_px = 0.0f;                // d' as drawn
     uint64_t vertex_budget = 0;                     // that d' was found for; 0: none

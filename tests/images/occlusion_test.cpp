@@ -15,7 +15,7 @@ TEST(Occlusion, ChangesNoPixelAlongAPath) {
         FrameSettings settings;
         uint32_t views;
     };
-    Case cases[] = {{"fine", {}, 24}, {"coarse", {}, 24}, {"every triangle", {}, 4}};
+    Case cases[] = {{"fine", {}, 24}, {"coarse", {}, 24}, {"every triangle", {}, 20}};
     cases[0].settings.sample_distance_px = 0.7f;
     cases[1].settings.sample_distance_px = 3.0f;
     cases[2].settings.level_of_detail = false;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 #include "runtime/core/hash.h"
 #include "runtime/core/jobs.h"
 
@@ -121,13 +122,19 @@ struct Mean {
 
 Mean mean_around(const HeightField& field, const GroundSurface& ground, uint32_t sample, uint32_t step) {
     uint32_t row = sample / field.columns, column = sample % field.columns, reach = step / 2;
-    uint32_t column_end = std::min(column + reach, field.columns - 1),
-             row_end = std::min(row + reach, field.rows - 1);
+    // Of a periodic field's samples, those beyond the border are inside again.
+    auto ends = [&](uint32_t at, uint32_t samples) {
+        int64_t first = int64_t(at) - reach, last = int64_t(at) + reach;
+        if (!field.periodic) first = std::max<int64_t>(first, 0), last = std::min<int64_t>(last, samples - 1);
+        return std::pair(first, last);
+    };
+    const auto [column_first, column_last] = ends(column, field.columns);
+    const auto [row_first, row_last] = ends(row, field.rows);
     Mean mean;
     float count = 0.0f;
-    for (uint32_t j = row - std::min(row, reach); j <= row_end; ++j)
-        for (uint32_t i = column - std::min(column, reach); i <= column_end; ++i) {
-            size_t at = size_t(j) * field.columns + i;
+    for (int64_t j = row_first; j <= row_last; ++j)
+        for (int64_t i = column_first; i <= column_last; ++i) {
+            size_t at = field.wrapped_sample(i, j);
             mean.normal += ground.normals[at];
             // Not all the way: openness already takes the skylight away, colour stands for the sun's share.
             mean.color += ground.colors_linear[at] * (0.4f + 0.6f * ground.light[at]);
@@ -139,16 +146,34 @@ Mean mean_around(const HeightField& field, const GroundSurface& ground, uint32_t
     return mean;
 }
 
-// The nearest color a surface word can hold. What rounding leaves goes to the neighbours (Floyd and
-// Steinberg): chance alone would stain the ground, where the vertices lie metres apart.
-vec3 nearest_color(vec3 color_linear) {
-    vec3 steps(31.0f, 63.0f, 31.0f), out;
-    for (int c = 0; c < 3; ++c) {
-        float coded = std::sqrt(glm::clamp(color_linear[c], 0.0f, 1.0f));
-        float level = std::floor(coded * steps[c] + 0.5f) / steps[c];
-        out[c] = level * level;
-    }
-    return out;
+// A color near `wanted` that a surface word can hold: rather somewhat brighter or darker than of another hue than `color`.
+// What that leaves goes to the neighbours (Floyd and Steinberg): chance alone would stain the ground, where the vertices
+// lie metres apart.
+vec3 nearest_color(vec3 wanted, vec3 color) {
+    const vec3 steps(31.0f, 63.0f, 31.0f);
+    auto value = [&](int c, float level) {
+        float coded = glm::clamp(level / steps[c], 0.0f, 1.0f);
+        return coded * coded;
+    };
+    vec3 below;
+    for (int c = 0; c < 3; ++c)
+        below[c] = std::floor(std::sqrt(glm::clamp(wanted[c], 0.0f, 1.0f)) * steps[c]);
+    constexpr float k_least = 1e-3f;  // of what ratios are taken
+    color = glm::max(color, vec3(k_least));
+    const float brightness = std::max(wanted.x + 3.0f * wanted.y, 4.0f * k_least);
+    vec3 best(0.0f);
+    float best_cost = INFINITY;
+    for (float red : {0.0f, 1.0f})
+        for (float green : {-1.0f, 0.0f, 1.0f, 2.0f})
+            for (float blue : {0.0f, 1.0f}) {
+                const vec3 out(value(0, below.x + red), value(1, below.y + green), value(2, below.z + blue));
+                const vec3 change = glm::max(out, vec3(k_least)) / color;
+                const float redder = change.x / change.y - 1.0f, bluer = change.z / change.y - 1.0f;
+                const float brighter = (out.x + 3.0f * out.y) / brightness - 1.0f;
+                const float cost = redder * redder + 0.15f * bluer * bluer + 0.3f * brighter * brighter;
+                if (cost < best_cost) best_cost = cost, best = out;
+            }
+    return best;
 }
 
 }  // namespace
@@ -200,10 +225,13 @@ TerrainMesh build_patches(const HeightField& field) {
             // rounding to pixels opens.
             float beside = 0.0f;
             size_t i = p % across, j = p / across;
-            if (i > 0) beside = std::max(beside, worst(p - 1));
-            if (i + 1 < across) beside = std::max(beside, worst(p + 1));
-            if (j > 0) beside = std::max(beside, worst(p - across));
-            if (j + 1 < down) beside = std::max(beside, worst(p + across));
+            if (i > 0 || field.periodic) beside = std::max(beside, worst(i > 0 ? p - 1 : p + across - 1));
+            if (i + 1 < across || field.periodic)
+                beside = std::max(beside, worst(i + 1 < across ? p + 1 : p - i));
+            if (j > 0 || field.periodic)
+                beside = std::max(beside, worst(j > 0 ? p - across : p + across * (down - 1)));
+            if (j + 1 < down || field.periodic)
+                beside = std::max(beside, worst(j + 1 < down ? p + across : i));
             TerrainPatch& out = mesh.patches[p];
             for (uint32_t level = 0; level < out.level_count; ++level) {
                 uint32_t index = out.first_level + level, step = 1u << level;
@@ -245,11 +273,14 @@ void color_vertices(const HeightField& field, const GroundSurface& ground, Terra
                         size_t at = size_t(row) * across + column;
                         uint32_t sample =
                             ((row << shift) + row_first) * field.columns + (column << shift) + column_first;
+                        // The same dither wherever a sample is the same place.
+                        uint32_t place =
+                            uint32_t(field.wrapped_sample(sample % field.columns, sample / field.columns));
                         Mean mean = mean_around(field, ground, sample, 1u << shift);
                         // On the border nothing is owed: both patches there must come to the same colour.
                         bool border = column == 0 || row == 0 || column + 1 == across || row + 1 == down;
                         vec3 wanted = border ? mean.color : mean.color + owed[at],
-                             color = nearest_color(wanted);
+                             color = nearest_color(wanted, mean.color);
                         vec3 rest = (wanted - color) * (1.0f / 16.0f);
                         if (column + 1 < across) {
                             owed[at + 1] += rest * 7.0f;
@@ -259,7 +290,7 @@ void color_vertices(const HeightField& field, const GroundSurface& ground, Terra
                         owed[at + across] += rest * 5.0f;
                         words[at] = encode_surface(
                             {normalize_or(mean.normal, vec3(0, 1, 0)), color, mean.light, false},
-                            mix_bits(sample + mix_bits(shift + 1u)));
+                            mix_bits(place + mix_bits(shift + 1u)));
                     }
                 const TerrainLevel& level = mesh.levels[index];
                 for (uint32_t v = level.first_vertex; v < level.first_vertex + level.vertex_count; ++v) {

@@ -10,7 +10,7 @@ namespace coppice {
 
 // error_m is at least this share of a level's spacing, level 0 excepted: vertices carry the colour too, and
 // even flat ground must not lose it to a triangle of a hundred metres.
-inline constexpr float k_color_error_share = 1.0f / 4.0f;
+inline constexpr float k_color_error_share = 1.0f / 10.0f;
 
 struct TerrainMesh {
     std::vector<TerrainPatch> patches;

@@ -20,6 +20,8 @@ vec3 mix_colors(vec3 a, vec3 b, float t) { return a + (b - a) * t; }
 std::vector<vec3> color_ground(const HeightField& field, const std::vector<vec3>& normals,
                                const GroundSettings& ground, dvec3 origin_world) {
     std::vector<vec3> colors(field.heights_m.size());
+    const double period =
+        field.periodic ? double(field.columns - 1) * double(field.cell_m) / double(ground.patch_m) : 0.0;
     float rock_up = portable_cos(ground.rock_slope_deg * (k_pi / 180.0f));
     parallel_for(field.rows, 8, [&](size_t first, size_t last) {
         for (uint32_t row = uint32_t(first); row < last; ++row)
@@ -27,9 +29,9 @@ std::vector<vec3> color_ground(const HeightField& field, const std::vector<vec3>
                 size_t index = size_t(row) * field.columns + column;
                 double x = double(field.x_of(column)), z = double(field.z_of(row));
                 double u = x / double(ground.patch_m), v = z / double(ground.patch_m);
-                float wide = fractal_noise(u, v, 5, 0.6f, ground.seed * 3u + 11u);
-                float other = fractal_noise(u * 1.7, v * 1.7, 5, 0.65f, ground.seed * 3u + 12u);
-                float fine = fractal_noise(u * 5.0, v * 5.0, 3, 0.8f, ground.seed * 3u + 13u);
+                float wide = fractal_noise(u, v, 5, 0.6f, ground.seed * 3u + 11u, period);
+                float other = fractal_noise(u * 1.7, v * 1.7, 5, 0.65f, ground.seed * 3u + 12u, period * 1.7);
+                float fine = fractal_noise(u * 5.0, v * 5.0, 3, 0.8f, ground.seed * 3u + 13u, period * 5.0);
                 vec3 color = mix_colors(ground.meadow, ground.dry, patches(wide, ground.dry_share));
                 color = mix_colors(color, ground.soil, patches(other, ground.soil_share));
                 // Rock starts where the slope says so, ragged by the noise.
@@ -47,6 +49,7 @@ std::vector<vec3> color_ground(const HeightField& field, const std::vector<vec3>
                 colors[index] = glm::clamp(color, vec3(0.0f), vec3(1.0f));
             }
     });
+    repeat_border(field, colors);
     return colors;
 }
 

@@ -7,6 +7,8 @@
 
 namespace coppice {
 
+inline constexpr double k_paint_reach = 1.6;  // of the edge, where noise carries it farthest out
+
 struct GroundPaint {
     Region region;
     vec3 color_linear{0.16f, 0.11f, 0.07f};
@@ -28,7 +30,8 @@ struct GroundSettings {
     std::vector<GroundPaint> paint;  // later over earlier
 };
 
-// One colour a sample. origin_world: of the field, for what is painted.
+// One colour a sample; of a periodic field, whose paint stays inside, the same on opposite borders. origin_world: of the
+// field, for what is painted.
 std::vector<vec3> color_ground(const HeightField& field, const std::vector<vec3>& normals,
                                const GroundSettings& ground, dvec3 origin_world);
 

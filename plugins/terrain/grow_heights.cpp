@@ -1,6 +1,5 @@
 #include "plugins/terrain/grow_heights.h"
 
-#include <algorithm>
 #include "plugins/terrain/build_patches.h"
 #include "plugins/shared/noise.h"
 #include "runtime/core/jobs.h"
@@ -10,16 +9,19 @@ namespace {
 
 float natural_height(const GrowHeightsSettings& s, const Region& valley, double x, double z) {
     double u = x / double(s.wavelength_m), v = z / double(s.wavelength_m);
-    float hills = fractal_noise(u, v, s.octaves, s.roughness, s.seed);
+    double period = s.periodic ? double(s.size_m) / double(s.wavelength_m) : 0.0;
+    float hills = fractal_noise(u, v, s.octaves, s.roughness, s.seed, period);
     if (s.ridges > 0.0f) {
-        float crest =
-            1.0f - 2.5f * std::fabs(fractal_noise(u * 0.7, v * 0.7, s.octaves, s.roughness, s.seed + 77u));
+        float crest = 1.0f - 2.5f * std::fabs(fractal_noise(u * 0.7, v * 0.7, s.octaves, s.roughness,
+                                                            s.seed + 77u, period * 0.7));
         hills += s.ridges * (0.5f * crest - hills);
     }
     float trough = 0.0f;
     if (!valley.shapes.empty())
         trough = 1.0f - smooth_step(0.0f, s.valley_width_m * 0.5f, float(valley.distance_m(dvec2(x, z))));
-    float border = float(std::max(std::abs(x), std::abs(z)) / (0.5 * double(s.size_m)));
+    // Between the square's distance and the circle's: the rim has no crease along the diagonals.
+    double x2 = x * x, z2 = z * z;
+    float border = float(std::sqrt(std::sqrt(x2 * x2 + z2 * z2)) / (0.5 * double(s.size_m)));
     return s.amplitude_m * hills * 2.0f * (1.0f - 0.75f * trough) - s.valley_depth_m * trough +
            s.rim_m * smooth_step(0.35f, 1.0f, border);
 }
@@ -35,6 +37,7 @@ HeightField grow_heights(const GrowHeightsSettings& s) {
     uint32_t cells = cells_along(s.size_m, s.cell_m);
     field.columns = field.rows = cells + 1;
     field.cell_m = s.size_m / float(cells);
+    field.periodic = s.periodic;
     field.heights_m.resize(size_t(field.columns) * field.rows);
     Region valley;
     if (s.valley.size() >= 2) {
@@ -57,6 +60,7 @@ HeightField grow_heights(const GrowHeightsSettings& s) {
                 field.heights_m[size_t(row) * field.columns + column] = height;
             }
     });
+    repeat_border(field, field.heights_m);
     return field;
 }
 

@@ -11,6 +11,8 @@ struct GrowHeightsSettings {
     float size_m = 1000.0f;  // of the square
     float cell_m = 4.0f;     // at most; rounded down so that whole patches fill the square
     uint32_t seed = 1;
+    // Copies of the ground stand beside each other without a seam. Not with a rim, a valley or a level place.
+    bool periodic = false;
     float amplitude_m = 10.0f;  // two thirds of the ground lie within about half of it
     float wavelength_m = 200.0f;
     uint32_t octaves = 5;

@@ -78,16 +78,32 @@ void LoadedTerrain::shade(float x_local, float z_local, float radius_m, float am
     auto last = [](float at, uint32_t count) {
         return at < 0.0f ? -1 : int64_t(std::min(at, float(count - 1)));
     };
-    int64_t column_last = last(column_mid + reach, field_.columns),
-            row_last = last(row_mid + reach, field_.rows);
+    int64_t column_first = first(column_mid - reach), column_last = last(column_mid + reach, field_.columns);
+    int64_t row_first = first(row_mid - reach), row_last = last(row_mid + reach, field_.rows);
+    if (field_.periodic) {  // the shade goes on beyond the border
+        auto middle = [](float at, uint32_t count) {
+            at = std::fmod(at, float(count - 1));
+            return at < 0.0f ? at + float(count - 1) : at;
+        };
+        column_mid = middle(column_mid, field_.columns);
+        row_mid = middle(row_mid, field_.rows);
+        reach = std::min(reach, 0.49f * float(std::min(field_.columns, field_.rows) - 1));
+        column_first = int64_t(std::floor(column_mid - reach)) + 1;
+        column_last = int64_t(std::floor(column_mid + reach));
+        row_first = int64_t(std::floor(row_mid - reach)) + 1;
+        row_last = int64_t(std::floor(row_mid + reach));
+    }
     std::lock_guard lock(mutex_);
-    for (int64_t row = first(row_mid - reach); row <= row_last; ++row)
-        for (int64_t column = first(column_mid - reach); column <= column_last; ++column) {
+    for (int64_t row = row_first; row <= row_last; ++row)
+        for (int64_t column = column_first; column <= column_last; ++column) {
             float dx = float(column) - column_mid, dz = float(row) - row_mid;
             float away = std::sqrt(dx * dx + dz * dz) / reach;
-            float& light = ground_.light[size_t(row) * field_.columns + size_t(column)];
+            float& light = ground_.light[field_.wrapped_sample(column, row)];
             light = std::max(k_darkest, light * (1.0f - amount * (1.0f - smooth_step(0.35f, 1.0f, away))));
         }
+    if (column_first <= 0 || row_first <= 0 || column_last + 1 >= field_.columns ||
+        row_last + 1 >= field_.rows)
+        repeat_border(field_, ground_.light);
     colored_ = false;
 }
 
@@ -115,6 +131,25 @@ HeightField read_flat(JsonObject flat) {
     return field;
 }
 
+// What makes one place of the ground unlike all others has no counterpart on the other side of a border.
+void check_periodic(JsonObject& object, const GrowHeightsSettings& s) {
+    for (const char* key : {"rim_m", "valley", "level"})
+        if (object.has(key))
+            object.report(ErrorId::value_out_of_range, key, "periodic ground cannot have it",
+                          "leave it out, or leave out \"periodic\"");
+    double waves = double(s.size_m) / double(s.wavelength_m);
+    if (std::ldexp(waves, int(s.octaves)) > k_longest_noise_period)
+        object.report(
+            ErrorId::value_out_of_range, "wavelength_m",
+            fmt::format("{:g} m, halved {} times, is too short to repeat", s.wavelength_m, s.octaves),
+            "fewer octaves or a longer wavelength_m");
+    if (waves < 1.0)
+        object.report(
+            ErrorId::value_out_of_range, "wavelength_m",
+            fmt::format("{:g} m is longer than the ground, {:g} m, which repeats", s.wavelength_m, s.size_m),
+            "at most size_m");
+}
+
 HeightField read_procedural(JsonObject object) {
     GrowHeightsSettings s;
     s.size_m = object.real("size_m", 1.0f, 100000.0f, s.size_m);
@@ -126,6 +161,7 @@ HeightField read_procedural(JsonObject object) {
     s.roughness = object.real("roughness", 0.0f, 1.0f, s.roughness);
     s.ridges = object.real("ridges", 0.0f, 1.0f, s.ridges);
     s.rim_m = object.real("rim_m", -5000.0f, 5000.0f, 0.0f);
+    s.periodic = object.truth("periodic", false);
     if (object.has("valley")) {
         JsonObject valley = object.object("valley");
         s.valley_width_m = valley.real("width_m", 1.0f, 100000.0f, s.valley_width_m);
@@ -143,6 +179,7 @@ HeightField read_procedural(JsonObject object) {
         s.level_radius_m = level.real("radius_m", 0.1f, 100000.0f);
         level.close();
     }
+    if (s.periodic) check_periodic(object, s);
     object.close();
     if (!check_cells(object, s.size_m, s.cell_m) || !object.document().sound()) return {};
     return grow_heights(s);
@@ -193,6 +230,24 @@ Result<HeightField> read_file(JsonObject object, const std::string& base_dir) {
     return read_heights((std::filesystem::path(base_dir) / name).lexically_normal().string(), settings);
 }
 
+// Paint on periodic ground stays inside, with all of its edge.
+Status check_paint(const GroundSettings& ground, const HeightField& field, dvec2 center,
+                   const std::string& file) {
+    const dvec2 half_size = dvec2(field.columns - 1, field.rows - 1) * (0.5 * double(field.cell_m));
+    for (size_t i = 0; i < ground.paint.size(); ++i) {
+        const GroundPaint& paint = ground.paint[i];
+        const auto [low, high] = paint.region.bounds();
+        const double edge_m = k_paint_reach * double(paint.edge_m);
+        if (glm::any(glm::lessThan(low - edge_m, center - half_size)) ||
+            glm::any(glm::greaterThan(high + edge_m, center + half_size)))
+            return fail(
+                ErrorId::value_out_of_range, file, fmt::format("terrain.ground.paint[{}].region", i),
+                fmt::format("reaches over the border of periodic ground of {:g} m", 2.0 * half_size.x),
+                "paint that ends inside it, with its edge_m");
+    }
+    return {};
+}
+
 Result<std::vector<float>> read_light(const std::string& path, const HeightField& field) {
     COPPICE_TRY(HeightField light, read_heights(path, {}));
     if (light.columns != field.columns || light.rows != field.rows)
@@ -227,6 +282,9 @@ Result<std::shared_ptr<Terrain>> load_terrain(std::string_view json, const std::
     } else {
         field = kind == 0 ? read_flat(object.object("flat")) : read_procedural(object.object("procedural"));
         COPPICE_CHECK(document.status());
+    }
+    if (field.periodic) {
+        COPPICE_CHECK(check_paint(ground, field, dvec2(center[0], center[2]), file));
     }
     std::vector<float> light;
     if (!light_file.empty()) {

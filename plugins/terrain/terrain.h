@@ -17,7 +17,7 @@ struct PackedVertex;  // plugins/vegetation/plant/plant.h
 
 struct TerrainLevel {
     uint32_t first_vertex, vertex_count;  // into Terrain::vertices, three a triangle, skirts included
-    // Largest vertical distance to the full grid; above level 0 at least a quarter of the spacing of the level's
+    // Largest vertical distance to the full grid; above level 0 at least a tenth of the spacing of the level's
     // vertices, because they carry the ground's colours too.
     float error_m;
 };

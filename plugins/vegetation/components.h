@@ -30,22 +30,26 @@ inline PlantTurn pack_turn_about_y(float angle_rad) {
     return pack_turn(0.0f, portable_sin(angle_rad * 0.5f), 0.0f, portable_cos(angle_rad * 0.5f));
 }
 
-// Of the entity that owns a tile's chunk. Bounds are relative to the origin and hold all its plants at full
-// size.
+// Of the entity that owns a tile's chunk, or stands for one that is not in memory. Bounds are relative to the origin and
+// hold all its plants at full size.
 struct Tile {
     static constexpr const char* k_component_name = "tile";
-    dvec3 origin_world;
+    dvec3 origin_world;  // counted from where its scene stands, which may be in several places: TileLevels::target
     Box bounds_tile;
     uint64_t plant_count = 0;
 };
 
-// What stands for a tile in the distance, and what it consists of; beside Tile. All tiles of a scene are one chunk, row 0
-// holds all others, and a tile's children follow each other.
+// What stands for a tile in the distance, and what it consists of; beside Tile. All tiles of a world are one chunk, row 0
+// holds all others, and a tile's children follow each other. A tile is one of three: a leaf, whose plants are a chunk that
+// it owns, while they are in memory; a parent of children; or a place, where another row's scene stands, at its origin.
 struct TileLevels {
     static constexpr const char* k_component_name = "tile levels";
-    uint32_t cloud = 0;                         // of the scene's clouds
-    uint32_t first_child = 0, child_count = 0;  // rows; none: its plants are a chunk that it owns
+    static constexpr uint32_t k_none = UINT32_MAX;
+    uint32_t cloud = k_none;                    // of the clouds that can be drawn; none: not in memory
+    uint32_t first_child = 0, child_count = 0;  // rows
+    uint32_t target = k_none;                   // a row: this one is a place
     float finest_density = 0.0f;                // the cloud suffices up to (pixels a metre / d')^2
+    uint32_t is_streamed = 0;                   // its blocks come from a file: they may be asked for
     uint64_t triangle_count = 0;                // of all its plants
 };
 

@@ -1,7 +1,10 @@
 // READ FIRST. Registers the components, systems and passes, in order of execution:
 //
-//   cull    list_tiles      cull/     tiles in view, nearest first, down to those whose clouds suffice; draw/ sees their plants
-//   lod     expand_plants   lod/      the budget's d'; which primitives of each plant's parts and of clouds; draw/ writes them down
+//   stream  stream_tiles    draw/     what was read of a world larger than memory is put where it is drawn from
+//   cull    list_tiles      cull/     tiles in view, nearest first, down to those whose clouds suffice, and what is missing;
+//                                     draw/ sees their plants
+//   lod     expand_plants   lod/      the budget's d'; which primitives of each plant's parts and of clouds; draw/ writes
+//                                     them down, in parallel
 //   draw    write_work_list draw/     the jobs' lists, one behind the other, into the mapped buffers
 //   report  count           report/   what was drawn
 //   passes  clear, triangles, big triangles, lines, points ..., resolve: draw/rasteriser.cpp
@@ -10,9 +13,12 @@
 #include <chrono>
 #include <cmath>
 #include <utility>
+#include "plugins/vegetation/cull/list_grounds.h"
 #include "plugins/vegetation/cull/list_tiles.h"
+#include "plugins/vegetation/draw/expand_ground.h"
 #include "plugins/vegetation/draw/frame_plants.h"
 #include "plugins/vegetation/draw/rasteriser.h"
+#include "plugins/vegetation/draw/tile_residency.h"
 #include "plugins/vegetation/lod/learn_cost.h"
 #include "plugins/vegetation/lod/rest.h"
 #include "runtime/core/log.h"
@@ -40,6 +46,7 @@ class VegetationSystems final : public Vegetation {
                     Rasteriser::create(*settings_.device, *settings_.frame_graph, settings_.frame_slots,
                                        settings_.width, settings_.height));
         Schedule& schedule = *settings_.schedule;
+        schedule.add(Phase::stream, 0, "stream_tiles", [this](World& world) { stream_tiles(world); });
         schedule.add(Phase::cull, 0, "list_tiles",
                      [this](TileList::Tiles tiles, TileList::Plants plants) { list_tiles(tiles, plants); });
         // The runs point into the plants' columns, and another d' asks for other tiles: so this reads them too.
@@ -54,14 +61,26 @@ class VegetationSystems final : public Vegetation {
         COPPICE_CHECK(check_scene(scene, plants.size()));
         const std::vector<TileNode> tree = build_tile_tree(scene, plants);
         COPPICE_TRY(SceneGeometry geometry, gather_geometry(scene, plants, tree));
-        drop_scene();
-        COPPICE_CHECK(rasteriser_->set_geometry({geometry.vertices, geometry.owners}));
-        geometry.vertices = {};
-        geometry.owners = {};
-        geometry_ = std::move(geometry);
-        terrain_ = scene.terrain;
-        light_ = scene.light;
+        COPPICE_CHECK(show(std::move(geometry), make_grounds(scene.terrain), scene.light));
         return add_tiles(scene, tree);
+    }
+
+    Status set_world(TileForest forest, std::vector<Plant> plants,
+                     const ResidencySettings& settings) override {
+        if (plants.size() != forest.models.size())
+            return fail(ErrorId::value_out_of_range, forest.path, "plants",
+                        std::to_string(plants.size()) + " packed plants",
+                        "one for each of the world's models");
+        std::vector<Ground> grounds = make_grounds(forest);
+        GeometrySource source{forest.path, forest.models, plants, {}, 0, grounds};
+        for (const TileCloud& cloud : forest.clouds) source.clouds.push_back(&cloud);
+        source.streamed_clouds = forest.packs.empty() ? 0 : TileResidency::cloud_count(settings);
+        COPPICE_TRY(SceneGeometry geometry, gather_geometry(source));
+        COPPICE_CHECK(show(std::move(geometry), std::move(grounds), forest.light));
+        COPPICE_CHECK(add_rows(forest));
+        if (!forest.packs.empty())
+            residency_ = std::make_unique<TileResidency>(forest, settings, uint32_t(forest.clouds.size()));
+        return {};
     }
 
     Status resize(uint32_t width, uint32_t height) override {
@@ -109,22 +128,59 @@ class VegetationSystems final : public Vegetation {
         return {};
     }
 
+    // In place of what was shown before.
+    Status show(SceneGeometry geometry, std::vector<Ground> grounds, const Light& light) {
+        drop_scene();
+        COPPICE_CHECK(
+            rasteriser_->set_geometry({geometry.vertices, geometry.owners, geometry.reserved_points}));
+        geometry.vertices = {};
+        geometry.owners = {};
+        geometry_ = std::move(geometry);
+        grounds_ = std::move(grounds);
+        light_ = light;
+        return {};
+    }
+
+    tl::unexpected<Error> no_room(const std::string& path) {
+        drop_scene();
+        return fail(ErrorId::limit_exceeded, path, "tiles", "no room for another tile", "place fewer plants");
+    }
+
+    // All in one chunk; plants follow when they are needed.
+    Status add_rows(const TileForest& forest) {
+        if (forest.rows.empty()) return {};
+        auto [tile_chunk, tiles, levels] =
+            settings_.world->create_chunk<Tile, TileLevels>(uint32_t(forest.rows.size()));
+        if (!tile_chunk) return no_room(forest.path);
+        chunks_.push_back(tile_chunk);
+        for (size_t r = 0; r < forest.rows.size(); ++r) {
+            const ForestRow& row = forest.rows[r];
+            tiles[r] = {row.origin, row.bounds_tile, row.plant_count};
+            levels[r] = {row.cloud,         row.first_child,    row.child_count,
+                         row.target,        row.finest_density, row.pack != k_no_row ? 1u : 0u,
+                         row.triangle_count};
+        }
+        scene_triangles_ = levels[0].triangle_count;
+        return {};
+    }
+
     // All tiles in one chunk; each leaf owns the chunk of its plants.
     Status add_tiles(const Scene& scene, std::span<const TileNode> tree) {
-        auto refused = [&] {
-            drop_scene();
-            return fail(ErrorId::limit_exceeded, scene.path, "tiles", "no room for another tile",
-                        "place fewer plants");
-        };
         if (tree.empty()) return {};
         auto [tile_chunk, tiles, levels] =
             settings_.world->create_chunk<Tile, TileLevels>(uint32_t(tree.size()));
-        if (!tile_chunk) return refused();
+        if (!tile_chunk) return no_room(scene.path);
         chunks_.push_back(tile_chunk);
         for (size_t row = tree.size(); row-- > 0;) {  // children before their parents
             const TileNode& node = tree[row];
             tiles[row] = {node.origin_world, node.bounds_tile, node.plant_count};
-            levels[row] = {uint32_t(row), node.first_child, node.child_count, node.cloud.finest_density(), 0};
+            levels[row] = {uint32_t(row),
+                           node.first_child,
+                           node.child_count,
+                           TileLevels::k_none,
+                           node.cloud.finest_density(),
+                           0,
+                           0};
             for (uint32_t child = 0; child < node.child_count; ++child)
                 levels[row].triangle_count += levels[node.first_child + child].triangle_count;
             if (node.child_count > 0) continue;
@@ -132,7 +188,7 @@ class VegetationSystems final : public Vegetation {
             auto [chunk, positions, turns, models] =
                 settings_.world->create_chunk<PlantPosition, PlantTurn, PlantModel>(
                     source.plant_count, settings_.world->chunk(tile_chunk).entity(uint32_t(row)));
-            if (!chunk) return refused();
+            if (!chunk) return no_room(scene.path);
             chunks_.push_back(chunk);
             for (uint32_t i = 0; i < source.plant_count; ++i) {
                 size_t plant = source.first_plant + i;
@@ -149,8 +205,9 @@ class VegetationSystems final : public Vegetation {
     void drop_scene() {
         for (const ChunkId& chunk : chunks_) settings_.world->destroy_chunk(chunk);
         chunks_.clear();
+        residency_.reset();
         geometry_ = {};
-        terrain_ = nullptr;
+        grounds_.clear();
         scene_triangles_ = 0;
         moved_ = true;
     }
@@ -194,13 +251,63 @@ class VegetationSystems final : public Vegetation {
         return std::max<uint64_t>(budget, 1);
     }
 
+    // Where the viewer will be: as far on as it came in the slower of the last two frames, so that a cut is no motion.
+    void predict_motion() {
+        const dvec3 step_m = camera_.position_world - last_camera_.position_world;
+        const dvec3 slower_m = glm::length(step_m) < glm::length(last_step_m_) ? step_m : last_step_m_;
+        motion_m_ = vec3(slower_m) * k_frames_ahead;
+        last_step_m_ = step_m;
+    }
+
+    void stream_tiles(World& world) {
+        const double begin = now_ms();
+        predict_motion();
+        frustum_ = make_frustum(camera_, rasteriser_->width(), rasteriser_->height());
+        see_grounds();
+        if (residency_) {
+            if (residency_->update(world, chunks_.front(), geometry_, *rasteriser_, slot_,
+                                   frame_.wait_for_tiles))
+                moved_ = true;
+            if (frame_.wait_for_tiles) wait_for_tiles(world);
+        }
+        report_.stream_ms = now_ms() - begin;
+    }
+
+    // And what the one that the viewer is above hides.
+    void see_grounds() {
+        const float error_px = ground_error_px(frame_);
+        ground_list_.list(grounds_, frustum_, camera_.position_world, error_px);
+        const Terrain* below = nullptr;
+        dvec3 camera_space(0.0);
+        for (const GroundInView& at : ground_list_.in_view()) {
+            const Box& bounds = grounds_[at.ground].bounds;
+            const vec3 viewer = vec3(-at.space_camera);
+            if (at.coarse_level != k_in_full || viewer.x < bounds.min.x || viewer.x > bounds.max.x ||
+                viewer.z < bounds.min.z || viewer.z > bounds.max.z)
+                continue;
+            below = grounds_[at.ground].terrain.get();
+            camera_space = -at.space_camera;
+            break;
+        }
+        horizon_.build(frame_.occlusion ? below : nullptr, camera_space, frustum_, error_px);
+    }
+
+    // What arrives shows what else is needed: once for each level of the hierarchy.
+    void wait_for_tiles(World& world) {
+        drawn_ = frame_;
+        for (int round = 0; round < k_most_rounds; ++round) {
+            list(TileList::Tiles(world), TileList::Plants(world), drawn_.sample_distance_px);
+            residency_->wish(tile_list_.wishes());
+            residency_->wait();
+            if (!residency_->update(world, chunks_.front(), geometry_, *rasteriser_, slot_, true)) return;
+            moved_ = true;
+        }
+    }
+
     void list_tiles(const TileList::Tiles& tiles, const TileList::Plants& plants) {
         double begin = now_ms();
         begin_frame();
         if (settled_) return;
-        frustum_ = make_frustum(camera_, rasteriser_->width(), rasteriser_->height());
-        horizon_.build(frame_.occlusion ? terrain_.get() : nullptr, camera_.position_world, frustum_,
-                       ground_error_px(drawn_));
         list(tiles, plants, drawn_.sample_distance_px);
         report_.cull_ms = now_ms() - begin;
     }
@@ -216,7 +323,7 @@ class VegetationSystems final : public Vegetation {
         const float spread_px =
             widest_spread_px(geometry_.least_importance, geometry_.most_line_width, coarsest);
         tile_list_.list(tiles, plants, frustum_, camera_.position_world,
-                        {drawn_.level_of_detail ? sample_distance_px : 0.0f, horizon, spread_px});
+                        {drawn_.level_of_detail ? sample_distance_px : 0.0f, motion_m_, horizon, spread_px});
         frame_plants_.see(tile_list_, geometry_, frustum_, drawn_, horizon, spread_px);
     }
 
@@ -259,10 +366,9 @@ class VegetationSystems final : public Vegetation {
         // The first part is the terrain's: should memory run out, the ground stays. The last one is the clouds'.
         work_.begin(run_count + 2);
         frame_plants_.draw(tile_list_, geometry_, frustum_, drawn_, resting_.index, work_, 1);
-        report_.terrain_triangles =
-            terrain_ ? expand_terrain(*terrain_, geometry_.first_terrain_vertex, camera_.position_world,
-                                      frustum_, drawn_, work_.part(0))
-                     : 0;
+        report_.terrain_triangles = expand_grounds(ground_list_.in_view(), geometry_, frustum_,
+                                                   ground_error_px(drawn_), work_.part(0));
+        if (residency_) residency_->wish(tile_list_.wishes());
         report_.lod_ms = now_ms() - begin;
     }
 
@@ -294,6 +400,7 @@ class VegetationSystems final : public Vegetation {
         report_.tiles = tile_list_.tile_count;
         report_.tiles_touched = tile_list_.touched_tile_count;
         report_.tiles_expanded = tile_list_.expanded_tile_count;
+        report_.tiles_missing = tile_list_.stand_in_count;
         report_.clouds = uint32_t(tile_list_.clouds().size());
         report_.plants = tile_list_.plant_count;
         report_.tiles_hidden = tile_list_.hidden_tile_count;
@@ -321,13 +428,21 @@ class VegetationSystems final : public Vegetation {
         report_.dropped_entries = layout_.dropped_entries;
         report_.dropped_triangles = rasteriser_->dropped_triangles();
         report_.gpu_bytes = rasteriser_->gpu_bytes();
+        if (!residency_) return;
+        const ResidencyStatistics streamed = residency_->statistics();
+        report_.streamed_clouds = streamed.clouds;
+        report_.streamed_plant_tiles = streamed.plant_tiles;
+        report_.stream_bytes_read = streamed.stream.bytes_read;
+        report_.stream_resident_bytes = streamed.stream.resident_bytes;
+        report_.stream_errors = streamed.stream.errors;
     }
 
     VegetationSettings settings_;
     std::unique_ptr<Rasteriser> rasteriser_;
     SceneGeometry geometry_;
-    std::shared_ptr<const Terrain> terrain_;
-    std::vector<ChunkId> chunks_;  // of the tiles, and of each leaf's plants
+    std::vector<Ground> grounds_;
+    std::vector<ChunkId> chunks_;  // of the tiles, and of each leaf's plants that is not streamed
+    std::unique_ptr<TileResidency> residency_;
     uint64_t scene_triangles_ = 0;
 
     Camera camera_;
@@ -346,9 +461,14 @@ class VegetationSystems final : public Vegetation {
     RestingFrame resting_;
     FrameSettings drawn_;  // frame_, with the d' of the resting view
 
+    static constexpr float k_frames_ahead = 30.0f;
+    static constexpr int k_most_rounds = 64;
+    dvec3 last_step_m_{0.0};
+    vec3 motion_m_{0.0f};
     Frustum frustum_{};
     Horizon horizon_;
     TileList tile_list_;
+    GroundList ground_list_;
     FramePlants frame_plants_;
     static constexpr float k_list_reach = 1.25f;
     float listed_px_ = 0.0f,

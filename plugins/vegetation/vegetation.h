@@ -15,6 +15,8 @@
 #include <string>
 #include "plugins/vegetation/components.h"
 #include "plugins/vegetation/eco/scene.h"
+#include "plugins/vegetation/eco/stream_tiles.h"
+#include "plugins/vegetation/eco/tile_forest.h"
 #include "plugins/vegetation/lod/settings.h"
 #include "plugins/vegetation/plant/plant.h"
 #include "plugins/vegetation/report/report.h"
@@ -42,6 +44,10 @@ class Vegetation {
     // before. Waits for the device; not for frames. Errors: value_out_of_range (the old scene stays), limit_exceeded,
     // device_lost (the scene is empty then).
     virtual Status set_scene(const Scene& scene, std::vector<Plant> plants) = 0;
+    // A world that is read while it is flown over (eco/tile_forest.h). plants[i] is the packed plant of forest.models[i].
+    // Errors: set_scene's.
+    virtual Status set_world(TileForest forest, std::vector<Plant> plants,
+                             const ResidencySettings& settings) = 0;
     // Size of the picture; waits for the device. 1 to 16384 a side. On an error the old size stays.
     virtual Status resize(uint32_t width, uint32_t height) = 0;
 

@@ -1,6 +1,7 @@
 // A tree of tiles with clouds and plants that mean nothing but differ everywhere, and a folder for its pack.
 #pragma once
 #include <array>
+#include <cstring>
 #include <filesystem>
 #include <string>
 #include <unistd.h>
@@ -34,6 +35,8 @@ inline TileCloud make_cloud(uint32_t point_count, Random& random) {
                                 uint32_t(random.next_bits())});
         cloud.densities.push_back(float(p + 1));
     }
+    for (int part = 0; part < 3; ++part)
+        cloud.exhausted_area_m2[random.next_below(k_density_steps)] = random.next_in(1.0f, 2.0f);
     cloud.exhausted_density = 0.75f * float(point_count);
     return cloud;
 }
@@ -115,6 +118,14 @@ class ScratchFolder {
   private:
     std::string folder_;
 };
+
+inline bool same_clouds(const TileCloud& a, const TileCloud& b) {
+    return std::memcmp(&a.part, &b.part, sizeof a.part) == 0 && a.points.size() == b.points.size() &&
+           (a.points.empty() ||
+            std::memcmp(a.points.data(), b.points.data(), a.points.size() * sizeof(PackedVertex)) == 0) &&
+           a.densities == b.densities && a.exhausted_area_m2 == b.exhausted_area_m2 &&
+           a.exhausted_density == b.exhausted_density;
+}
 
 inline TilePack write_and_open(const MadeTiles& made, const std::string& path, uint64_t key = 7) {
     const Status written = write_tile_pack(path, made.nodes, made.scene, made.plants, key);

@@ -72,20 +72,21 @@ TEST_F(PopulatedScenes, GiveBackWhatWasWrittenToTheLastBit) {
 TEST_F(PopulatedScenes, OpenTheirOwnPacksAndNoOthers) {
     auto loaded = load(write_populated_scene(populated_));
     ASSERT_TRUE(loaded);
-    auto packs = open_packs(*loaded, made_.plants);
+    auto packs = open_packs(*loaded);
     ASSERT_TRUE(packs) << to_string(packs.error());
     EXPECT_EQ(packs->size(), 1u);
 
     std::vector<Plant> others = made_.plants;
     others[1].content_hash ^= 1;
-    EXPECT_EQ(open_packs(*loaded, others).error().file, loaded->scene.models[1].source_path);
+    EXPECT_TRUE(check_plants(*loaded, made_.plants));
+    EXPECT_EQ(check_plants(*loaded, others).error().file, loaded->scene.models[1].source_path);
     PopulatedScene other_models = *loaded;
     other_models.model_content_hashes[1] ^= 1;
-    EXPECT_EQ(open_packs(other_models, others).error().place, "models");
+    EXPECT_EQ(open_packs(other_models).error().place, "models");
     write_and_open(make_tile_tree(3, 0, 20, 10, 9), folder_.path_of("tiles.tiles"));
-    EXPECT_EQ(open_packs(*loaded, made_.plants).error().id, ErrorId::file_corrupt) << "another scene's";
+    EXPECT_EQ(open_packs(*loaded).error().id, ErrorId::file_corrupt) << "another scene's";
     std::filesystem::remove(folder_.path_of("tiles.tiles"));
-    EXPECT_EQ(open_packs(*loaded, made_.plants).error().id, ErrorId::file_missing);
+    EXPECT_EQ(open_packs(*loaded).error().id, ErrorId::file_missing);
 }
 
 TEST_F(PopulatedScenes, AreReadStrictly) {

@@ -159,6 +159,23 @@ TEST(Scatter, NoisyScattersFillWhatTheOtherLeaves) {
     EXPECT_GT(std::count_if(cells.begin(), cells.end(), [](int n) { return n >= 14; }), 300);
 }
 
+TEST(Scatter, NoiseWithAPeriodRepeats) {
+    ScatterSettings settings = over(rectangle(200, 100));
+    settings.density_per_m2 = 0.5;
+    settings.noisy = true;
+    settings.noise = {25.0f, 0.5f, 3.0f, 0.02f, 3, 9, 100.0};
+    int cells[10][20] = {};
+    for (const Placement& p : run(settings))
+        ++cells[size_t((p.position_world.z + 50) / 10)][size_t((p.position_world.x + 100) / 10)];
+    int a_period_apart = 0, half_apart = 0;
+    for (const auto& row : cells)
+        for (size_t i = 0; i < 10; ++i) {
+            a_period_apart += std::abs(row[i] - row[i + 10]);
+            half_apart += std::abs(row[i] - row[i + 5]);
+        }
+    EXPECT_LT(3 * a_period_apart, half_apart);
+}
+
 TEST(Scatter, WeightsVariationsScalesAndTurnsAreDrawn) {
     ScatterSettings settings = over(rectangle(200, 200));
     settings.species = {{{{{0}, {1}, {2}}, 10.0f}, 3.0f}, {{{{3}}, 5.0f}, 1.0f}};

@@ -100,11 +100,11 @@ TEST(TilePack, GivesBackWhatWasWritten) {
         EXPECT_EQ(packed.child_count, node.child_count);
         EXPECT_EQ(packed.plant_count, node.plant_count);
         EXPECT_EQ(packed.finest_density, node.cloud.finest_density());
-        const PackedPart part = node.cloud.points.empty() ? PackedPart{} : node.cloud.part;
-        EXPECT_EQ(std::memcmp(&packed.cloud_part, &part, sizeof part), 0);
         auto cloud = read_cloud(pack, n);
         ASSERT_TRUE(cloud) << to_string(cloud.error());
-        EXPECT_TRUE(same_bytes<PackedVertex>(*cloud, node.cloud.points));
+        EXPECT_TRUE(same_clouds(*cloud, node.cloud));
+        EXPECT_EQ(cloud->points.size() * 20 + (cloud->points.empty() ? 0 : 257 * 4),
+                  bytes_of_block(packed, TileBlockKind::cloud));
         auto plants = read_plants(pack, n);
         ASSERT_TRUE(plants) << to_string(plants.error());
         if (node.child_count) {
@@ -254,6 +254,7 @@ TEST(TilePack, RefusesNodesThatCannotBe) {
     EXPECT_EQ(id([](SignedPack& p) { p.node(1).bounds_max[0] = INFINITY; }), k_wrong);
     EXPECT_EQ(id([](SignedPack& p) { p.node(1).bounds_max[2] = -100.0f; }), k_wrong);
     EXPECT_EQ(id([](SignedPack& p) { p.node(1).finest_density = NAN; }), k_wrong);
+    EXPECT_EQ(id([](SignedPack& p) { p.node(1).finest_density += 1; }), k_wrong) << "not its cloud's";
     EXPECT_EQ(id([](SignedPack& p) { p.node(1).reserved = 1; }), k_wrong);
     EXPECT_EQ(id([](SignedPack& p) { p.node(1).cloud_part.area_m2 = NAN; }), k_wrong);
     EXPECT_EQ(id([](SignedPack& p) { p.node(1).cloud_part.coverage_gain[3] = 0; }), k_wrong);
@@ -328,6 +329,14 @@ TEST(TilePack, RefusesContentsThatCannotBe) {
     EXPECT_EQ(refused([](MadeTiles& m) { m.nodes[1].cloud.points[3].y_plant = NAN; }).place, "node 1, cloud");
     EXPECT_EQ(refused([](MadeTiles& m) { m.nodes[1].cloud.points[3].z_plant = 1e9f; }).place,
               "node 1, cloud");
+    EXPECT_EQ(refused([](MadeTiles& m) { m.nodes[1].cloud.densities[0] = -1.0f; }).place, "node 1, cloud");
+    EXPECT_EQ(refused([](MadeTiles& m) { m.nodes[1].cloud.densities[3] = 0.5f; }).place, "node 1, cloud");
+    EXPECT_EQ(refused([](MadeTiles& m) { m.nodes[1].cloud.densities[2] = NAN; }).place, "node 1, cloud");
+    EXPECT_EQ(refused([](MadeTiles& m) { m.nodes[1].cloud.exhausted_area_m2[9] = -1.0f; }).place,
+              "node 1, cloud");
+    EXPECT_EQ(refused([](MadeTiles& m) { m.nodes[1].cloud.exhausted_area_m2[9] = INFINITY; }).place,
+              "node 1, cloud");
+    EXPECT_EQ(refused([](MadeTiles& m) { m.nodes[1].cloud.exhausted_density = NAN; }).place, "node 1, cloud");
     EXPECT_EQ(refused([](MadeTiles& m) { m.scene.positions[2].x_tile = -INFINITY; }).place, "node 1, plants");
     EXPECT_EQ(refused([](MadeTiles& m) { m.scene.positions[2].scale = 0; }).place, "node 1, plants");
     EXPECT_EQ(refused([](MadeTiles& m) { m.scene.positions[2].scale = NAN; }).place, "node 1, plants");
@@ -361,6 +370,7 @@ TEST(TilePack, SaysWhatOtherFilesAre) {
     EXPECT_EQ(open_tile_pack(folder.path_of("text")).error().id, ErrorId::format_unknown);
     write_and_open(make_tile_tree(0, 0, 3, 3), folder.path_of("a"));
     std::string newer = bytes_of(folder.path_of("a"));
+    ASSERT_EQ(newer[4], char(k_tiles_version));
     ++newer[4];
     ASSERT_TRUE(write_text_file(folder.path_of("a"), newer));
     EXPECT_EQ(open_tile_pack(folder.path_of("a")).error().id, ErrorId::format_unknown);

@@ -108,7 +108,7 @@ TEST(LoadTerrain, LevelErrorsHoldAndAreReached) {
                     }
             }
             float spacing = 200.0f / 128.0f * float(1 << l);
-            EXPECT_NEAR(level.error_m, std::max(worst, spacing / 4.0f), 2e-3f) << "level " << l;
+            EXPECT_NEAR(level.error_m, std::max(worst, spacing / 10.0f), 2e-3f) << "level " << l;
             EXPECT_GE(level.error_m, terrain->levels()[patch.first_level + l - 1].error_m * 0.3f);
         }
     }
@@ -210,11 +210,31 @@ TEST(LoadTerrain, CoarserLevelsKeepTheMeanColor) {
     EXPECT_GT(full.y, full.z);  // a meadow is green, not blue
 }
 
+// A color of 16 bits has few reds and blues: ground of one color must not show it in spots of many hues.
+TEST(LoadTerrain, GroundOfOneColorHasOneHueAndItsMean) {
+    auto terrain = load(R"({"flat": {"size_m": 256, "cell_m": 2}, "ground": {"meadow": [0.062, 0.083, 0.027],
+        "dry_share": 0, "soil_share": 0, "variation": 0.3}})");
+    double ratio_sum = 0.0, squares = 0.0, count = 0.0;
+    for (const TerrainPatch& patch : terrain->patches()) {
+        const TerrainLevel& level = terrain->levels()[patch.first_level];
+        for (uint32_t v = level.first_vertex; v < level.first_vertex + level.vertex_count; ++v) {
+            vec3 color = decode_surface(terrain->vertices()[v].surface).color_linear;
+            double ratio = double(color.x / color.y) / (0.062 / 0.083);
+            ratio_sum += ratio;
+            squares += (ratio - 1.0) * (ratio - 1.0);
+            count += 1.0;
+        }
+    }
+    EXPECT_NEAR(ratio_sum / count, 1.0, 0.015);
+    EXPECT_LT(std::sqrt(squares / count), 0.06);  // 0.1 where each channel is rounded by itself
+}
+
 TEST(LoadTerrain, ShadingDarkensAroundOnly) {
     auto plain = load(k_hills), shaded = load(k_hills);
     shaded->shade(20.0f, -10.0f, 9.0f, 0.6f);
     const TerrainPatch* patch = plain->patches().data();
     size_t darker = 0;
+    dvec3 plain_sum(0.0), shaded_sum(0.0);
     for (size_t p = 0; p < plain->patches().size(); ++p) {
         const TerrainLevel& level = plain->levels()[patch[p].first_level];
         for (uint32_t v = level.first_vertex; v < level.first_vertex + level.vertex_count; ++v) {
@@ -224,7 +244,10 @@ TEST(LoadTerrain, ShadingDarkensAroundOnly) {
                     b = decode_surface(shaded->vertices()[v].surface);
             if (away > 9.01f) {
                 ASSERT_EQ(a.openness, b.openness);
-                ASSERT_NEAR(a.color_linear.y, b.color_linear.y, 0.025f);  // two steps: rounding is passed on
+                // Rounding is passed on, and either way to keep the hue; the mean stays.
+                ASSERT_NEAR(a.color_linear.y, b.color_linear.y, 0.045f);
+                plain_sum += dvec3(a.color_linear);
+                shaded_sum += dvec3(b.color_linear);
             } else if (away < 3.0f) {
                 EXPECT_LT(b.color_linear.y, a.color_linear.y);
                 EXPECT_LT(b.openness, 0.6f);
@@ -233,6 +256,7 @@ TEST(LoadTerrain, ShadingDarkensAroundOnly) {
         }
     }
     EXPECT_GT(darker, 20u);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(shaded_sum[c], plain_sum[c], 0.003 * plain_sum[c]);
     shaded->shade(NAN, 0.0f, 5.0f, 1.0f);
     shaded->shade(1e30f, -1e30f, 1e30f, 1.0f);
     EXPECT_FALSE(shaded->vertices().empty());

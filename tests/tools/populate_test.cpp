@@ -16,6 +16,7 @@
 #include "plugins/vegetation/eco/load_scene.h"
 #include "plugins/vegetation/eco/populated_scene.h"
 #include "plugins/vegetation/eco/shade_ground.h"
+#include "plugins/vegetation/eco/tile_forest.h"
 #include "tests/tools/run_program.h"
 
 namespace {
@@ -92,6 +93,7 @@ TEST_F(Populate, GivesAPlayerAllOfTheScene) {
     ASSERT_EQ(result.exit_code, 0) << result.err;
     EXPECT_EQ(result.err, "");
     EXPECT_NE(result.out.find("2 plants: 2 made, 0 kept"), std::string::npos) << result.out;
+    EXPECT_NE(result.out.find("2.6 k plants"), std::string::npos) << result.out;
 
     constexpr TerrainInterface k_terrain{sizeof(TerrainInterface), load_terrain};
     auto authored = load_scene(scene_, {&k_terrain});
@@ -123,7 +125,8 @@ TEST_F(Populate, GivesAPlayerAllOfTheScene) {
     ASSERT_EQ(ground.size(), expected.size());
     EXPECT_EQ(std::memcmp(ground.data(), expected.data(), ground.size_bytes()), 0);
 
-    auto packs = open_packs(*populated, plants);
+    EXPECT_TRUE(check_plants(*populated, plants));
+    auto packs = open_packs(*populated);
     ASSERT_TRUE(packs) << to_string(packs.error());
     ASSERT_GE(packs->size(), 3u);
     uint64_t plant_count = 0, triangle_count = 0;
@@ -237,6 +240,164 @@ TEST_F(Populate, AFullDiskLeavesOldFilesAndSaysSo) {
     EXPECT_NE(result.err.find("write-failed"), std::string::npos) << result.err;
     EXPECT_NE(result.err.find(".tiles"), std::string::npos) << result.err;
     EXPECT_EQ(contents(out_), before);
+}
+
+// A field and a hill that share their daisies, 1 x 2 of each in a county, and 2 x 1 counties beside one more field.
+class PopulateMosaic : public testing::Test {
+  protected:
+    PopulateMosaic() : folder_(fresh_folder()), scene_(folder_ + "/land.eco.json"), out_(folder_ + "/out") {
+        fs::copy_file(std::string(COPPICE_SOURCE_DIR) + "/content/species/daisy.json",
+                      folder_ + "/daisy.json");
+        write_scene("field", 1100, 1.0);
+        write_scene("hill", 300, 6.5);
+        write(folder_ + "/parts/county.eco.json", R"({"mosaic": [
+            {"scene": "field.eco.json", "at": [-32, 0], "grid": {"columns": 1, "rows": 2, "spacing_m": 64}},
+            {"scene": "hill.eco.json", "at": [32, 0], "grid": {"columns": 1, "rows": 2, "spacing_m": 64}}]})");
+        write(scene_, R"({"name": "test land", "mosaic": [
+            {"scene": "parts/county.eco.json", "grid": {"columns": 2, "rows": 1, "spacing_m": 128}},
+            {"scene": "parts/field.eco.json", "at": [1000, -96]}],
+            "sun": {"azimuth_deg": 100, "elevation_deg": 30}, "haze": {"density_per_m": 0.0002},
+            "camera_path": "flight.json", "sample_distance_px": 1.5})");
+        write(folder_ + "/flight.json", R"({"keys": [
+            {"time_s": 0, "at": [-96, 10], "above_m": 2}, {"time_s": 9, "at": [100, 10], "above_m": 2}]})");
+    }
+    ~PopulateMosaic() override { fs::remove_all(folder_); }
+
+    void write_scene(const std::string& name, int count, double height_m) {
+        write(folder_ + "/parts/" + name + ".eco.json",
+              R"({"plants": {"daisy": {"source": "../daisy.json"}},
+                  "terrain": {"flat": {"size_m": 64, "cell_m": 4, "height_m": )" +
+                  std::to_string(height_m) + R"(}},
+                  "placements": [{"scatter": {"plant": "daisy", "count": )" +
+                  std::to_string(count) + R"(, "scale": [4, 6],
+                      "region": {"circle": {"center": [0, 0], "radius_m": 18}}}}]})");
+    }
+    ProgramResult populate(const std::string& out, std::vector<std::string> more = {}) const {
+        std::vector<std::string> words{"populate", scene_, "-o", out, "--pack-plants", "600"};
+        words.insert(words.end(), more.begin(), more.end());
+        return run_coppice(words);
+    }
+
+    std::string folder_, scene_, out_;
+};
+
+TEST_F(PopulateMosaic, GivesAPlayerEverySceneOnce) {
+    const ProgramResult result = populate(out_);
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(result.err, "");
+    // 5 fields of 1,100 and 4 hills of 300.
+    EXPECT_NE(result.out.find("6.7 k plants"), std::string::npos) << result.out;
+    EXPECT_NE(result.out.find("2 different scenes in 9 places"), std::string::npos) << result.out;
+    size_t folders = 0, plants = 0, scenes = 0, packs = 0;
+    for (const auto& entry : fs::directory_iterator(out_)) folders += entry.is_directory();
+    for (const auto& [name, text] : contents(out_)) {
+        plants += name.ends_with(".plant");
+        scenes += name.ends_with("scene.json");
+        packs += name.ends_with(".tiles");
+    }
+    EXPECT_EQ(folders, 4u) << "three scenes below, and the plants they share";
+    EXPECT_EQ(plants, 1u);
+    EXPECT_EQ(scenes, 4u);
+
+    // Carried away, with what it was made of gone.
+    const std::string elsewhere = folder_ + "/elsewhere";
+    fs::rename(out_, elsewhere);
+    fs::remove_all(folder_ + "/parts");
+    constexpr TerrainInterface k_terrain{sizeof(TerrainInterface), load_terrain};
+    const auto forest = load_forest(elsewhere + "/scene.json", &k_terrain);
+    ASSERT_TRUE(forest) << to_string(forest.error());
+    EXPECT_EQ(forest->name, "test land");
+    EXPECT_EQ(forest->rows[0].plant_count, 6700u);
+    EXPECT_GE(packs, 3u);
+    EXPECT_EQ(forest->packs.size(), packs);
+    ASSERT_EQ(forest->models.size(), 1u);
+    const auto daisy = load_plant(forest->models[0].source_path);
+    ASSERT_TRUE(daisy) << to_string(daisy.error());
+    EXPECT_EQ(forest->rows[0].triangle_count, 6700u * (daisy->triangle_vertices.size() / 3));
+    EXPECT_EQ(forest->light.haze_density_per_m, 0.0002f);
+    EXPECT_EQ(forest->sample_distance_px, 1.5f);
+    ASSERT_EQ(forest->camera_path.size(), 2u);
+    EXPECT_NEAR(forest->camera_path[0].camera.position_world.y, 3.0, 1e-5) << "above the field";
+    EXPECT_NEAR(forest->camera_path[1].camera.position_world.y, 8.5, 1e-5) << "above the hill";
+    EXPECT_FALSE(forest->grounds[0].without_gaps) << "a field stands alone";
+
+    // Each below can be flown over as well.
+    for (const auto& entry : fs::directory_iterator(elsewhere)) {
+        if (!fs::exists(entry.path() / "scene.json")) continue;
+        const auto below = load_forest((entry.path() / "scene.json").string(), &k_terrain);
+        ASSERT_TRUE(below) << to_string(below.error());
+        EXPECT_TRUE(below->grounds.at(0).without_gaps);
+    }
+}
+
+TEST_F(PopulateMosaic, MakesTheSameBytesEveryTimeAndOnlyWhatIsMissing) {
+    ASSERT_EQ(populate(out_).exit_code, 0);
+    const Files first = contents(out_);
+    // Where all of it lies means nothing.
+    fs::create_directories(folder_ + "/moved");
+    for (const char* name : {"land.eco.json", "flight.json", "daisy.json", "parts"})
+        fs::copy(folder_ + "/" + name, folder_ + "/moved/" + name, fs::copy_options::recursive);
+    ASSERT_EQ(
+        run_coppice({"populate", folder_ + "/moved/land.eco.json", "-o", out_ + "2", "--pack-plants", "600"})
+            .exit_code,
+        0);
+    EXPECT_EQ(contents(out_ + "2"), first);
+
+    std::map<std::string, fs::file_time_type> times;
+    for (const auto& [name, text] : first) times[name] = fs::last_write_time(out_ + "/" + name);
+    const ProgramResult again = populate(out_);
+    ASSERT_EQ(again.exit_code, 0) << again.err;
+    EXPECT_EQ(again.out.find(": made"), std::string::npos) << again.out;
+    EXPECT_EQ(again.out.find("1 made"), std::string::npos) << again.out;
+    for (const auto& [name, time] : times) EXPECT_EQ(fs::last_write_time(out_ + "/" + name), time) << name;
+
+    // A scene that changes takes the mosaics above it along, and leaves the other as it is.
+    write_scene("hill", 310, 6.5);
+    const ProgramResult changed = populate(out_);
+    ASSERT_EQ(changed.exit_code, 0) << changed.err;
+    for (const auto& [name, text] : contents(out_)) {
+        if (name.starts_with("field")) {
+            EXPECT_EQ(text, first.at(name)) << name;
+        } else if (name.ends_with("scene.json")) {
+            EXPECT_NE(text, first.at(name)) << name;
+        }
+    }
+}
+
+TEST_F(PopulateMosaic, PiecesMadeByNinjaOrOneByOneAreTheSame) {
+    ASSERT_EQ(populate(out_).exit_code, 0);
+    const Files whole = contents(out_);
+    const std::string file = folder_ + "/build.ninja", by_ninja = folder_ + "/by ninja";
+    const ProgramResult listed = populate(by_ninja, {"--ninja", file});
+    ASSERT_EQ(listed.exit_code, 0) << listed.err;
+    auto ninja = [&] {
+        const std::string log = folder_ + "/ninja.log";
+        const int status = std::system(("ninja -f '" + file + "' > '" + log + "' 2>&1").c_str());
+        EXPECT_EQ(status, 0) << read_file(log);
+        return read_file(log);
+    };
+    ninja();
+    EXPECT_EQ(contents(by_ninja), whole);
+    EXPECT_NE(ninja().find("no work to do"), std::string::npos);
+    write_scene("hill", 310, 6.5);
+    ninja();
+    ASSERT_EQ(populate(folder_ + "/changed").exit_code, 0);
+    Files changed = contents(by_ninja);
+    for (const auto& [name, text] : contents(folder_ + "/changed"))
+        EXPECT_TRUE(changed[name] == text) << name;
+
+    const ProgramResult unknown = populate(out_, {"--only", "field/scene.json"});
+    EXPECT_EQ(unknown.exit_code, 2);
+    EXPECT_NE(unknown.err.find("field/scene.json"), std::string::npos) << unknown.err;
+    const ProgramResult early = populate(folder_ + "/early", {"--only", "scene.json"});
+    EXPECT_EQ(early.exit_code, 2);
+    EXPECT_NE(early.err.find("scene.json"), std::string::npos) << early.err;
+}
+
+TEST_F(PopulateMosaic, IsNotLoadedAsAWhole) {
+    const ProgramResult played = run_coppice({"play", scene_, "--headless", "32x32", "--out", out_});
+    EXPECT_EQ(played.exit_code, 2);
+    EXPECT_NE(played.err.find("coppice populate"), std::string::npos) << played.err;
 }
 
 TEST_F(Populate, SaysWhatIsWrong) {

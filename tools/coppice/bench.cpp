@@ -10,6 +10,7 @@
 #include "tools/coppice/bench_cook.h"
 #include "tools/coppice/bench_ecs.h"
 #include "tools/coppice/bench_raster.h"
+#include "tools/coppice/bench_scale.h"
 #include "tools/coppice/bench_scenes.h"
 #include "tools/coppice/command.h"
 
@@ -87,6 +88,8 @@ const std::vector<Bench>& benches() {
         {"frame", "what the CPU does for a frame of 100,000 plants: cull, levels, budget, work list",
          bench_frame},
         {"pines", "640 pines at 795x700, also with every triangle", bench_pines},
+        {"scale", "one view and budget over 10^7 to 10^12 triangles; a page. Makes 200 MiB of scenes", bench_scale},
+        {"scenes", "pines, palms, landscape and sunflowers at 795x700: rate, primitives, memory", bench_table},
         {"stand", "640, 5,000 and 50,000 trees, against other programs' times", bench_stand},
     };
     return k_benches;
@@ -114,7 +117,7 @@ void add_bench(CLI::App& app, Command& chosen) {
                       "accuracy: names or parts of names, with ; between. Default: all");
     bench->add_option("--size", command->settings.size, "accuracy: of the pictures")->capture_default_str();
     bench->add_option("--out", command->settings.out,
-                      "accuracy: folder for the page. Default: out/accuracy-SCENE");
+                      "accuracy, scale: folder for the page. Default: out/accuracy-SCENE, out/scale");
     bench->add_flag("--strict", command->strict, "Exit with 1 where a figure does not hold");
     bench->callback([command, &chosen] { chosen = [command] { return run(*command); }; });
 }

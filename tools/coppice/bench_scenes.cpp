@@ -102,6 +102,29 @@ Result<nlohmann::json> bench_frame(const BenchSettings& settings) {
     return to_json("frame", record, figures);
 }
 
+Result<nlohmann::json> bench_table(const BenchSettings& settings) {
+    std::vector<Figure> figures;
+    PlayRecord last;
+    for (const char* scene : {"pines", "palms", "landscape", "sunflowers"}) {
+        PlayOptions options;
+        options.width = 795;
+        options.height = 700;
+        COPPICE_TRY(last, fly_scene(settings, scene, options));
+        const std::vector<Figure> all = play_figures(last);
+        auto add = [&](const char* name, const char* unit, std::optional<double> reach = {}) {
+            figures.push_back({fmt::format("{} {}", scene, name), figure_value(all, name), unit, reach});
+        };
+        add("median_hz", "Hz", 30.0);
+        add("scene_triangles", "");
+        add("plants", "");
+        add("triangles", "per frame");
+        add("lines", "per frame");
+        add("points", "per frame");
+        add("device_memory_mib", "MiB");
+    }
+    return to_json("scenes", last, figures);
+}
+
 Result<nlohmann::json> bench_stand(const BenchSettings& settings) {
     // peer_ms, peer_db: the fastest peer on such a machine (docs/decisions.md), the latter its picture against its own
     // full one. compared_frames: how many are also drawn with every triangle, which takes seconds a frame.

@@ -23,6 +23,9 @@ Examples:
       also draws some of the frames with every triangle, and prints both times
   coppice play content/scenes/pines.eco.json --headless 795x700 --out out/p --frames 90 --pictures 0,45,89
       the first 90 frames, pictures of three of them
+  coppice populate content/scenes/landscape.eco.json -o out/landscape
+  coppice play out/landscape
+      the same landscape, read while it is flown over
   coppice play content/scenes/woodland.eco.json --vertices 500000
       half a million vertices in every frame, d' as large as that takes
   coppice play tree.glb
@@ -88,7 +91,8 @@ void add_play(CLI::App& app, Command& chosen) {
     CLI::App* play = app.add_subcommand("play", "Fly through a scene, in a window or headless with a report");
     play->footer(k_examples);
     play->add_option("scene", options.scene,
-                     "The scene, *.eco.json, or a plant: *.glb, *.gltf, species *.json, *.plant")
+                     "The scene, *.eco.json; a folder that coppice populate made; or a plant: *.glb, *.gltf, "
+                     "species *.json, *.plant")
         ->required();
     play->add_option("--path", options.path, "Camera path, *.json, in place of the scene's own");
     play->add_option("--headless", command->headless,
@@ -145,6 +149,12 @@ void add_play(CLI::App& app, Command& chosen) {
     play->add_option("--compare-frames", options.compare_frames, "How many of them")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
+    play->add_option("--tile-memory", options.tile_memory_mib,
+                     "Of a populated scene, MiB of tiles kept in memory, and as many on the device")
+        ->check(CLI::Range(1, 1 << 20))
+        ->capture_default_str();
+    play->add_flag("--wait-for-tiles", options.settings.wait_for_tiles,
+                   "Of a populated scene: every frame waits for the tiles it needs, whatever it takes");
     play->add_option("--device", options.device, "Vulkan device, by index or part of its name");
     play->add_flag("--validation", options.validation,
                    "Vulkan's validation layers; any message fails the run");

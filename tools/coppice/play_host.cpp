@@ -20,6 +20,15 @@ Result<uint64_t> hash_file(const std::string& path) {
     return hash_bytes(file.bytes().data(), file.bytes().size());
 }
 
+// The scene.json of a folder that `coppice populate` made, for its path or the folder's; else empty.
+std::string populated_scene_file(const std::string& path) {
+    constexpr const char* k_name = "scene.json";
+    std::error_code error;
+    const std::filesystem::path given(path);
+    if (std::filesystem::is_directory(given, error)) return (given / k_name).string();
+    return given.filename() == k_name ? path : "";
+}
+
 std::string cache_dir_of(const PlayOptions& options) {
     return options.cache_dir.empty() ? default_cache_dir() : options.cache_dir;
 }
@@ -46,6 +55,7 @@ const ImagesInterface* PlayHost::find_images() {
 
 // A plant's scene is made when its size is known, in load_plants.
 Status PlayHost::load_scene_file(const PlayOptions& options) {
+    if (!populated_scene_file(options.scene).empty()) return load_forest_file(options);
     Stopwatch clock;
     COPPICE_TRY(const uint64_t file_hash, hash_file(options.scene));
     hashes.emplace_back("scene file", file_hash);
@@ -61,7 +71,49 @@ Status PlayHost::load_scene_file(const PlayOptions& options) {
     return {};
 }
 
+Status PlayHost::load_forest_file(const PlayOptions& options) {
+    Stopwatch clock;
+    const std::string file = populated_scene_file(options.scene);
+    if (options.keep_scene)
+        return fail(ErrorId::usage, file, "", "a populated scene is never in memory as a whole",
+                    "name the *.eco.json that it was made from");
+    COPPICE_TRY(const uint64_t file_hash, hash_file(file));
+    hashes.emplace_back("scene file", file_hash);
+    COPPICE_TRY(forest_,
+                load_forest(file, registry.find<TerrainInterface>(k_terrain_interface, k_terrain_version)));
+    scene.name = forest_->name;
+    scene.path = forest_->path;
+    scene.models = forest_->models;
+    scene.camera_path = forest_->camera_path;
+    scene.sample_distance_px = forest_->sample_distance_px;
+    plant_count = forest_->rows.empty() ? 0 : forest_->rows.front().plant_count;
+    if (!options.path.empty()) {
+        COPPICE_TRY(scene.camera_path, load_camera_path(options.path, [this](double x, double z) {
+                        return ground_height(*forest_, x, z);
+                    }));
+    }
+    load.scene_ms = clock.ms();
+    return {};
+}
+
+Result<std::vector<Plant>> PlayHost::load_forest_plants() {
+    Stopwatch clock;
+    std::vector<Plant> plants;
+    for (size_t m = 0; m < scene.models.size(); ++m) {
+        const std::string& file = scene.models[m].source_path;
+        COPPICE_TRY(Plant plant, load_plant(file));
+        if (plant.content_hash != forest_->model_content_hashes[m])
+            return fail(ErrorId::file_corrupt, file, "", "not the plant that the scene was populated with",
+                        "populate the scene again");
+        hashes.emplace_back("plant " + scene.models[m].name, plant.content_hash);
+        plants.push_back(std::move(plant));
+    }
+    load.plants_ms = clock.ms();
+    return plants;
+}
+
 Result<std::vector<Plant>> PlayHost::load_plants(const PlayOptions& options) {
+    if (forest_) return load_forest_plants();
     Stopwatch plants_clock;
     const auto* modeller = registry.find<ModellerInterface>(k_modeller_interface, k_modeller_version);
     std::vector<PlantSource> sources;
@@ -128,6 +180,14 @@ Status PlayHost::create_vegetation(const PlayOptions& options, std::vector<Plant
     settings.height = height = options.height;
     COPPICE_TRY(vegetation, interface->create(settings));
     if (options.keep_scene) plants = loaded;
+    if (forest_) {
+        const uint64_t budget_bytes = uint64_t(options.tile_memory_mib) << 20;
+        COPPICE_CHECK(
+            vegetation->set_world(std::move(*forest_), std::move(loaded), {budget_bytes, budget_bytes}));
+        forest_.reset();
+        load.upload_ms = clock.ms();
+        return {};
+    }
     COPPICE_CHECK(vegetation->set_scene(scene, std::move(loaded)));
     // The world has its own: 32 bytes a plant need not be kept twice.
     plant_count = scene.positions.size();

@@ -4,11 +4,13 @@
 #include <array>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 #include "plugins/images/images.h"
+#include "plugins/vegetation/eco/tile_forest.h"
 #include "plugins/vegetation/vegetation.h"
 #include "runtime/ecs/schedule.h"
 #include "runtime/ecs/world.h"
@@ -77,11 +79,14 @@ class PlayHost {
     uint32_t width = 0, height = 0;
 
   private:
+    std::optional<TileForest> forest_;  // of a populated scene, until the vegetation has it
     static constexpr uint32_t k_frame_slots = 2;
     std::array<double, k_frame_slots> schedule_ms_of_slot_{};
     PlayHost() = default;
     Status load_plugins();
     Status load_scene_file(const PlayOptions& options);
+    Status load_forest_file(const PlayOptions& options);
+    Result<std::vector<Plant>> load_forest_plants();
     Result<std::vector<Plant>> load_plants(const PlayOptions& options);
     Status create_device(const PlayOptions& options, const std::vector<const char*>& present_extensions);
     Status create_vegetation(const PlayOptions& options, std::vector<Plant> loaded);

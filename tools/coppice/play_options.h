@@ -26,6 +26,7 @@ struct PlayOptions {
     std::string device;
     bool validation = false;
     std::string cache_dir;  // of packed plants; empty: the user's cache folder
+    uint32_t tile_memory_mib = 256;  // of a populated scene: of tiles in memory, and as much on the device
     bool keep_scene = false;  // PlayHost keeps the whole scene and its plants beside what it draws
 };
 

@@ -67,6 +67,18 @@ std::vector<Figure> play_figures(const PlayRecord& record) {
          quantile(over_frames(record, [](auto& f) { return double(f.report.gpu_bytes) / (1 << 20); }), 1.0),
          "MiB",
          {}},
+        {"tiles_missing_frames",
+         double(std::count_if(record.frames.begin(), record.frames.end(),
+                              [](const FrameRecord& f) { return f.report.tiles_missing > 0; })),
+         "frames",
+         {}},
+        {"stream_read_mib", double(record.frames.back().report.stream_bytes_read) / (1 << 20), "MiB", {}},
+        {"stream_resident_mib",
+         quantile(
+             over_frames(record, [](auto& f) { return double(f.report.stream_resident_bytes) / (1 << 20); }),
+             1.0),
+         "MiB",
+         {}},
         {"load_ms",
          record.load.scene_ms + record.load.device_ms + record.load.plants_ms + record.load.tiles_ms +
              record.load.upload_ms,
@@ -97,23 +109,26 @@ std::vector<Figure> play_figures(const PlayRecord& record) {
 }
 
 std::string frames_csv(const PlayRecord& record) {
-    std::string csv = "frame,time_s,wall_ms,schedule_ms,cull_ms,lod_ms,write_ms";
+    std::string csv = "frame,time_s,wall_ms,schedule_ms,stream_ms,cull_ms,lod_ms,write_ms";
     for (const std::string& pass : record.passes) csv += ",gpu_" + pass + "_ms";
     csv +=
         ",sample_distance_px,vertex_budget,vertices,triangles,lines,points,terrain_triangles,full_triangles,"
-        "tiles_touched,clouds,plants_"
-        "visible,tiles_hidden,plants_hidden,"
-        "work_entries,dropped_entries\n";
+        "tiles_touched,clouds,tiles_missing,stream_bytes_read,stream_resident_bytes,plants_visible,tiles_"
+        "hidden,"
+        "plants_hidden,work_entries,dropped_entries\n";
     for (const FrameRecord& frame : record.frames) {
         const FrameReport& report = frame.report;
-        csv += fmt::format("{},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f}", frame.frame, frame.time_s,
-                           frame.wall_ms, frame.schedule_ms, report.cull_ms, report.lod_ms, report.write_ms);
+        csv += fmt::format("{},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f}", frame.frame, frame.time_s,
+                           frame.wall_ms, frame.schedule_ms, report.stream_ms, report.cull_ms, report.lod_ms,
+                           report.write_ms);
         for (double ms : frame.pass_ms) csv += fmt::format(",{:.4f}", ms);
-        csv += fmt::format(",{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", report.sample_distance_px,
-                           report.vertex_budget, report.vertices, report.triangles, report.lines,
-                           report.points, report.terrain_triangles, report.full_triangles,
-                           report.tiles_touched, report.clouds, report.plants_visible, report.tiles_hidden,
-                           report.plants_hidden, report.work_entries, report.dropped_entries);
+        csv +=
+            fmt::format(",{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", report.sample_distance_px,
+                        report.vertex_budget, report.vertices, report.triangles, report.lines, report.points,
+                        report.terrain_triangles, report.full_triangles, report.tiles_touched, report.clouds,
+                        report.tiles_missing, report.stream_bytes_read, report.stream_resident_bytes,
+                        report.plants_visible, report.tiles_hidden, report.plants_hidden, report.work_entries,
+                        report.dropped_entries);
     }
     return csv;
 }

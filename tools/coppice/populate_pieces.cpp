@@ -10,6 +10,7 @@
 #include "plugins/vegetation/eco/load_scene.h"
 #include "plugins/vegetation/eco/make_tiles.h"
 #include "plugins/vegetation/eco/shade_ground.h"
+#include "plugins/vegetation/eco/tile_forest.h"
 #include "runtime/core/file.h"
 #include "runtime/core/hash.h"
 #include "runtime/core/mapped_file.h"
@@ -29,7 +30,7 @@ Status list_plants(Pieces& pieces) {
     for (const SceneModel& model : pieces.scene.models) {
         COPPICE_TRY(const std::string path,
                     cooked_path(pieces.settings.folder, model.source_path, model.variation, CookSettings{}));
-        const std::string name = "plants/" + fs::path(path).filename().string();
+        const std::string name = pieces.settings.plants + "/" + fs::path(path).filename().string();
         const auto [at, is_new] = known.emplace(name, uint32_t(pieces.plants.size()));
         if (is_new) pieces.plants.push_back({name, model.source_path, model.variation});
         pieces.plant_of_model.push_back(at->second);
@@ -231,6 +232,44 @@ Result<Outcome> make_scene(const Pieces& pieces, std::span<const Plant> plants) 
     COPPICE_TRY(populated.terrain_json, bring_terrain(pieces, plants));
     const std::string text = write_populated_scene(populated);
     return write_if_different(path_of(pieces, k_scene_piece), std::as_bytes(std::span(text)));
+}
+
+PopulateSettings settings_of(const PopulateSettings& settings, const MosaicNode& node) {
+    PopulateSettings own = settings;
+    own.scene = node.path;
+    if (node.folder.empty()) return own;
+    own.folder = (fs::path(settings.folder) / node.folder).string();
+    own.plants = "../plants";
+    return own;
+}
+
+Result<Outcome> make_mosaic(const PopulateSettings& settings, const MosaicTree& tree,
+                            const MosaicNode& node) {
+    const fs::path own = fs::path(settings.folder) / node.folder;
+    PopulatedScene populated;
+    Scene& scene = populated.scene;
+    scene.path = (own / k_scene_piece).lexically_normal().string();
+    scene.name = node.file.name;
+    scene.light = node.file.light;
+    scene.sample_distance_px = node.file.sample_distance_px;
+    populated.mosaic = node.file.places;
+    for (size_t p = 0; p < populated.mosaic.size(); ++p) {
+        PlacedScene& placed = populated.mosaic[p];
+        const MosaicNode& below = tree.nodes[node.scenes[p]];
+        placed.path = (fs::path(settings.folder) / below.folder / k_scene_piece).lexically_normal().string();
+        COPPICE_TRY(const std::string text, read_text_file(placed.path));
+        placed.content_hash = hash_text(text);
+    }
+    // The flight may be above ground that only the scenes below know.
+    COPPICE_TRY(const TileForest forest, make_forest(populated, settings.terrain));
+    COPPICE_TRY(MosaicFile again, read_mosaic_file(node.path, [&forest](double x_world, double z_world) {
+                    return ground_height(forest, x_world, z_world);
+                }));
+    scene.camera_path = std::move(again.camera_path);
+    for (PlacedScene& placed : populated.mosaic)
+        placed.path = fs::path(placed.path).lexically_relative(own.lexically_normal()).generic_string();
+    const std::string text = write_populated_scene(populated);
+    return write_if_different(scene.path, std::as_bytes(std::span(text)));
 }
 
 }  // namespace coppice

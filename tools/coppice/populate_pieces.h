@@ -1,5 +1,5 @@
-// The pieces a populated scene consists of: packed plants, packs of tiles, and scene.json, which names them all. Each is
-// made on its own from what the author wrote and the pieces before it, is written whole or not at all, and says in its name
+// The pieces a populated scene consists of: packed plants, packs of tiles, and scene.json, which names them all; a mosaic's
+// scene.json names those of its scenes. Each is made on its own from what the author wrote and the pieces before it, is written whole or not at all, and says in its name
 // or head what it was made of: so any of them can be made by another process, and none is made twice.
 #pragma once
 #include <cstdint>
@@ -8,6 +8,7 @@
 #include <vector>
 #include "plugins/images/images.h"
 #include "plugins/modeller/modeller.h"
+#include "plugins/vegetation/eco/mosaic_tree.h"
 #include "plugins/vegetation/eco/populated_scene.h"
 
 namespace coppice {
@@ -15,6 +16,7 @@ namespace coppice {
 struct PopulateSettings {
     std::string scene;                // *.eco.json
     std::string folder;               // where the pieces go
+    std::string plants = "plants";    // where in it the plants go: scenes of a mosaic share theirs
     std::string cache_dir;            // of measured populations; empty: the user's
     uint64_t pack_plants = 1u << 20;  // of one pack, at most; but a tile is never divided
     const TerrainInterface* terrain = nullptr;
@@ -23,8 +25,8 @@ struct PopulateSettings {
 };
 
 struct PlantPiece {
-    std::string
-        name;  // in the folder: "plants/oak-0123456789abcdef.plant", the hash being that of all it is made of
+    // In the folder: "plants/oak-0123456789abcdef.plant", the hash being that of all it is made of.
+    std::string name;
     std::string source_path;
     uint64_t variation;
 };
@@ -62,5 +64,14 @@ Result<Outcome> make_pack(const Pieces& pieces, const PackPiece& piece, std::spa
 
 // scene.json, from packs that have been made; and beside it the files its ground needs.
 Result<Outcome> make_scene(const Pieces& pieces, std::span<const Plant> plants);
+
+// Of a scene below a mosaic, what its pieces take; of the only scene, the settings as they are.
+PopulateSettings settings_of(const PopulateSettings& settings, const MosaicNode& node);
+
+// scene.json of a mosaic in the tree of settings.scene, from those of the scenes it consists of.
+Result<Outcome> make_mosaic(const PopulateSettings& settings, const MosaicTree& tree, const MosaicNode& node);
+
+// populate.cpp: all pieces of settings.scene, a scene or a mosaic, with progress; what is there and sound is kept.
+Status populate(const PopulateSettings& settings);
 
 }  // namespace coppice

@@ -4,72 +4,148 @@
 #include <tuple>
 
 namespace coppice {
+namespace {
+
+// What will be needed soon comes behind what is needed now.
+constexpr float k_soon_share = 0.25f;
+
+float distance_m(const Box& box, vec3 from) { return glm::length(glm::clamp(from, box.min, box.max) - from); }
+
+}  // namespace
+
+TileList::Pending TileList::arrive(Pending at) const {
+    while (levels_of_row_[at.row].target != TileLevels::k_none) {
+        at.space_camera += tile_of_row_[at.row].origin_world;
+        at.row = levels_of_row_[at.row].target;
+    }
+    return at;
+}
+
+TileList::SeenTile TileList::see(const Tile& tile, const Pending& at, const Frustum& frustum,
+                                 const Settings& settings) const {
+    SeenTile seen;
+    seen.origin_camera = vec3(tile.origin_world + at.space_camera);
+    seen.bounds_camera = {tile.bounds_tile.min + seen.origin_camera,
+                          tile.bounds_tile.max + seen.origin_camera};
+    seen.inside = at.inside;
+    seen.outside = false;
+    if (!at.inside) {
+        const Visibility visibility = see_box(frustum, seen.bounds_camera);
+        seen.outside = visibility == Visibility::outside;
+        seen.inside = visibility == Visibility::inside;
+    }
+    seen.hidden =
+        !seen.outside && settings.horizon && settings.horizon->hidden(seen.bounds_camera, settings.spread_px);
+    seen.nearest_m = distance_m(seen.bounds_camera, vec3(0.0f));
+    const vec3 center = seen.bounds_camera.center();
+    // What is nearest asks for most.
+    const float focal_px = frustum.focal_px * off_axis_stretch(frustum, center, glm::length(center));
+    auto density_at = [&](float nearest_m) {
+        const float most_px = focal_px / std::max(nearest_m, frustum.near_m);
+        return most_px / settings.sample_distance_px * (most_px / settings.sample_distance_px);
+    };
+    const float soon_m = std::min(seen.nearest_m, distance_m(seen.bounds_camera, settings.motion_m));
+    seen.density = settings.sample_distance_px > 0.0f ? density_at(seen.nearest_m) : INFINITY;
+    seen.density_soon = settings.sample_distance_px > 0.0f ? density_at(soon_m) : INFINITY;
+    const float size_px =
+        glm::length(tile.bounds_tile.size()) * frustum.focal_px / std::max(soon_m, frustum.near_m);
+    seen.priority = std::min(size_px * size_px, 1e30f) * (at.soon ? k_soon_share : 1.0f);
+    return seen;
+}
+
+bool TileList::all_children_drawable(const TileLevels& levels, const Pending& at, const Frustum& frustum,
+                                     const Settings& settings) const {
+    for (uint32_t i = 0; i < levels.child_count; ++i) {
+        Pending child = at;
+        child.row = levels.first_child + i;
+        child = arrive(child);
+        if (levels_of_row_[child.row].cloud != TileLevels::k_none) continue;
+        const SeenTile seen = see(tile_of_row_[child.row], child, frustum, settings);
+        if (!seen.outside && !seen.hidden) return false;
+    }
+    return true;
+}
+
+void TileList::visit(Pending at, const Frustum& frustum, const Settings& settings) {
+    at = arrive(at);
+    ++touched_tile_count;
+    const Tile& tile = tile_of_row_[at.row];
+    const TileLevels& levels = levels_of_row_[at.row];
+    const SeenTile seen = see(tile, at, frustum, settings);
+    hidden_tile_count += seen.hidden;
+    if (seen.outside || seen.hidden) return;
+    if (levels.is_streamed) wishes_.push_back({at.row, TileBlockKind::cloud, seen.priority});
+
+    const bool suffices = seen.density <= levels.finest_density;
+    const bool refines_soon = seen.density_soon > levels.finest_density;
+    bool refined = false;
+    if (refines_soon && levels.child_count == 0) {
+        if (levels.is_streamed) wishes_.push_back({at.row, TileBlockKind::plants, seen.priority});
+        refined = at.drawn && !suffices && !plants_of_row_[at.row].positions.empty();
+        if (refined)
+            expanded_.push_back({seen.nearest_m, at.row, seen.inside, seen.origin_camera,
+                                 settings.horizon && settings.horizon->hides_some(seen.bounds_camera)});
+    } else if (refines_soon) {
+        refined = at.drawn && !suffices && all_children_drawable(levels, at, frustum, settings);
+        // All that is missing on the way down is wished for at once.
+        for (uint32_t i = 0; i < levels.child_count; ++i)
+            pending_.push_back(
+                {levels.first_child + i, seen.inside, refined, at.soon || suffices, at.space_camera});
+    }
+    if (refined || !at.drawn || levels.cloud == TileLevels::k_none) return;
+    stand_in_count += !suffices;
+    clouds_.push_back({levels.cloud, seen.origin_camera, seen.bounds_camera, seen.nearest_m,
+                       levels.finest_density, tile.plant_count, levels.triangle_count});
+}
+
+void TileList::collect_plants(const Plants& plants) {
+    plants_of_row_.assign(tile_of_row_.size(), {});
+    plants.each_chunk([&](const ChunkView&, std::span<const PlantPosition> positions,
+                          std::span<const PlantTurn> turns, std::span<const PlantModel> models,
+                          const Tile& tile) {
+        plants_of_row_[size_t(&tile - tile_of_row_.data())] = {positions, turns, models};
+        ++tile_count;
+    });
+}
 
 void TileList::list(const Tiles& tiles, const Plants& plants, const Frustum& frustum, dvec3 camera_world,
                     const Settings& settings) {
-    const float sample_distance_px = settings.sample_distance_px;
     runs_.clear();
     clouds_.clear();
     expanded_.clear();
-    tile_count = expanded_tile_count = plant_count = touched_tile_count = hidden_tile_count = 0;
-    std::span<const Tile> tile_of_row;
-    std::span<const TileLevels> levels_of_row;
+    wishes_.clear();
+    tile_count = expanded_tile_count = touched_tile_count = hidden_tile_count = stand_in_count = 0;
+    plant_count = 0;
+    tile_of_row_ = {};
     tiles.each_chunk(
         [&](const ChunkView&, std::span<const Tile> some_tiles, std::span<const TileLevels> levels) {
-            tile_of_row = some_tiles;
-            levels_of_row = levels;
+            tile_of_row_ = some_tiles;
+            levels_of_row_ = levels;
         });
-    if (tile_of_row.empty()) return;
-    plants_of_row_.assign(tile_of_row.size(), {});
-    plants.each_chunk([&](const ChunkView& chunk, std::span<const PlantPosition> positions,
-                          std::span<const PlantTurn> turns, std::span<const PlantModel> models,
-                          const Tile& tile) {
-        plants_of_row_[size_t(&tile - tile_of_row.data())] = {positions, turns, models};
-        ++tile_count;
-        plant_count += chunk.size();
-    });
+    if (tile_of_row_.empty()) return;
+    plant_count = tile_of_row_[0].plant_count;
+    collect_plants(plants);
 
-    pending_.assign(1, {0, false});
+    pending_.assign(1, {0, false, true, false, -camera_world});
     while (!pending_.empty()) {
-        const auto [row, known_inside] = pending_.back();
+        const Pending at = pending_.back();
         pending_.pop_back();
-        ++touched_tile_count;
-        const Tile& tile = tile_of_row[row];
-        const TileLevels& levels = levels_of_row[row];
-        const vec3 origin = vec3(tile.origin_world - camera_world);
-        const Box bounds{tile.bounds_tile.min + origin, tile.bounds_tile.max + origin};
-        bool inside = known_inside;
-        if (!inside) {
-            const Visibility visibility = see_box(frustum, bounds);
-            if (visibility == Visibility::outside) continue;
-            inside = visibility == Visibility::inside;
-        }
-        if (settings.horizon && settings.horizon->hidden(bounds, settings.spread_px)) {
-            ++hidden_tile_count;
-            continue;
-        }
-        const float nearest_m = glm::length(glm::clamp(vec3(0.0f), bounds.min, bounds.max));
-        // What is nearest asks for most.
-        const float most_px = frustum.focal_px / std::max(nearest_m, frustum.near_m) *
-                              off_axis_stretch(frustum, bounds.center(), glm::length(bounds.center()));
-        const float density = most_px / sample_distance_px * (most_px / sample_distance_px);
-        if (sample_distance_px > 0.0f && density <= levels.finest_density)
-            clouds_.push_back(
-                {levels.cloud, origin, bounds, nearest_m, tile.plant_count, levels.triangle_count});
-        else if (levels.child_count == 0)
-            expanded_.push_back(
-                {nearest_m, row, inside, origin, settings.horizon && settings.horizon->hides_some(bounds)});
-        else
-            for (uint32_t child = 0; child < levels.child_count; ++child)
-                pending_.push_back({levels.first_child + child, inside});
+        visit(at, frustum, settings);
     }
 
-    std::sort(clouds_.begin(), clouds_.end(), [](const CloudTile& a, const CloudTile& b) {
-        return std::tuple(a.nearest_m, a.cloud) < std::tuple(b.nearest_m, b.cloud);
-    });
-    std::sort(expanded_.begin(), expanded_.end(), [](const ExpandedTile& a, const ExpandedTile& b) {
-        return std::tuple(a.nearest_m, a.row) < std::tuple(b.nearest_m, b.row);
-    });
+    // One row may stand in several places that are equally far.
+    auto by_distance = [](const auto& a, const auto& b, uint32_t row_a, uint32_t row_b) {
+        return std::tuple(a.nearest_m, row_a, a.origin_camera.x, a.origin_camera.z) <
+               std::tuple(b.nearest_m, row_b, b.origin_camera.x, b.origin_camera.z);
+    };
+    std::sort(clouds_.begin(), clouds_.end(),
+              [&](const CloudTile& a, const CloudTile& b) { return by_distance(a, b, a.cloud, b.cloud); });
+    std::sort(expanded_.begin(), expanded_.end(),
+              [&](const ExpandedTile& a, const ExpandedTile& b) { return by_distance(a, b, a.row, b.row); });
+    make_runs();
+}
+
+void TileList::make_runs() {
     expanded_tile_count = uint32_t(expanded_.size());
     for (const ExpandedTile& tile : expanded_) {
         const TilePlants& of = plants_of_row_[tile.row];

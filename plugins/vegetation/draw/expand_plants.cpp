@@ -1,8 +1,8 @@
 #include "plugins/vegetation/draw/expand_plants.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
-#include "plugins/vegetation/cull/ground_level.h"
 #include "plugins/vegetation/eco/part_chance.h"
 
 namespace coppice {
@@ -54,14 +54,27 @@ CloudView view_of(const CloudTile& tile, const Frustum& frustum) {
             focal_px / std::max(tile.nearest_m, frustum.near_m)};
 }
 
+// Of the points that are drawn at most, where the cloud stands in for what is not in memory.
+std::span<const float> drawable_densities(const CloudTile& tile, const DrawCloud& cloud, const CloudView& seen,
+                                          const FrameSettings& settings) {
+    const float mean_px2 = cloud.mean_area_m2 * seen.view.pixels_per_meter * seen.view.pixels_per_meter;
+    const float from_here = settings.splat_factor *
+                            projected_area_px2(cloud.part, seen.view, settings.projection) / mean_px2;
+    const float farness = seen.view.pixels_per_meter / seen.nearest_pixels_per_meter;
+    const float most = tile.finest_density * farness * farness * from_here;
+    const std::span<const float> all = cloud.densities;
+    return most == most ? all.first(size_t(std::upper_bound(all.begin(), all.end(), most) - all.begin())) : all;
+}
+
 }  // namespace
 
 void measure_clouds(std::span<const CloudTile> tiles, const SceneGeometry& geometry, const Frustum& frustum,
                     const FrameSettings& settings, BudgetHistogram& histogram) {
     for (const CloudTile& tile : tiles) {
         const DrawCloud& cloud = geometry.clouds[tile.cloud];
-        add_cloud(histogram, cloud.part, cloud.densities, cloud.mean_area_m2, view_of(tile, frustum).view,
-                  settings);
+        const CloudView seen = view_of(tile, frustum);
+        add_cloud(histogram, cloud.part, drawable_densities(tile, cloud, seen, settings), cloud.mean_area_m2,
+                  seen.view, settings);
     }
 }
 
@@ -71,32 +84,19 @@ void expand_clouds(std::span<const CloudTile> tiles, const SceneGeometry& geomet
     for (const CloudTile& tile : tiles) {
         const DrawCloud& cloud = geometry.clouds[tile.cloud];
         const CloudView seen = view_of(tile, frustum);
+        // Asked for more than the cloud has, it is drawn with larger points until what is nearer has been read.
+        FrameSettings tile_settings = settings;
+        tile_settings.sample_distance_px =
+            std::max(settings.sample_distance_px,
+                     seen.nearest_pixels_per_meter / std::sqrt(std::max(tile.finest_density, 1e-12f)));
         // A tile around the image plane has no depth to go by: all of it is drawn as its nearest place asks for.
         const float depth_m = std::max(glm::dot(frustum.forward, tile.bounds_camera.center()), 0.0f);
         const PartChoice choice = choose_cloud(cloud.part, cloud.densities, cloud.mean_area_m2, seen.view,
-                                               depth_m, seen.nearest_pixels_per_meter, settings);
+                                               depth_m, seen.nearest_pixels_per_meter, tile_settings);
         if (choice.points == 0) continue;
         work.add(cloud.geometry, choice, work.add_instance(instance_of(mat3(1.0f), 1.0f, tile.origin_camera)),
                  turn);
     }
-}
-
-uint64_t expand_terrain(const Terrain& terrain, uint32_t first_vertex, dvec3 camera_world,
-                        const Frustum& frustum, const FrameSettings& settings, WorkPart& work) {
-    const float error_px = ground_error_px(settings);
-    vec3 origin = vec3(terrain.origin_world() - camera_world);
-    uint32_t instance = work.add_instance(instance_of(mat3(1.0f), 1.0f, origin));
-    uint64_t triangles = 0;
-    for (const TerrainPatch& patch : terrain.patches()) {
-        Box bounds{patch.bounds_local.min + origin, patch.bounds_local.max + origin};
-        if (patch.level_count == 0 || see_box(frustum, bounds) == Visibility::outside) continue;
-        const TerrainLevel& level =
-            terrain.levels()[patch.first_level +
-                             choose_ground_level(patch, terrain.levels(), bounds, frustum, error_px)];
-        work.add_ground(first_vertex + level.first_vertex, level.vertex_count / 3, instance);
-        triangles += level.vertex_count / 3;
-    }
-    return triangles;
 }
 
 }  // namespace coppice

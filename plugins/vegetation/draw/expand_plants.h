@@ -29,9 +29,5 @@ void expand_clouds(std::span<const CloudTile> tiles, const SceneGeometry& geomet
 
 // What the ground may be off by on the picture.
 inline float ground_error_px(const FrameSettings& settings) { return settings.level_of_detail ? 1.0f : 0.0f; }
-// The terrain's patches in view, each at the coarsest level whose error stays under that, or all at the finest without
-// levels of detail. Returns the triangles.
-uint64_t expand_terrain(const Terrain& terrain, uint32_t first_vertex, dvec3 camera_world,
-                        const Frustum& frustum, const FrameSettings& settings, WorkPart& work);
 
 }  // namespace coppice

@@ -17,6 +17,7 @@ namespace {
 constexpr uint32_t k_first_big_triangles = 1u << 18;
 constexpr uint32_t k_first_instances = 1u << 14, k_first_entries = 1u << 16;
 constexpr uint64_t k_pixel_radiance_bytes = 12;
+constexpr uint64_t k_upload_bytes = uint64_t(4) << 20;  // of a frame: what 25 tiles' clouds take
 constexpr uint32_t k_pixels_a_group = 256;  // accumulate.comp's k_run
 // Of resolve.comp. A CPU wants few borders of blocks, a GPU many blocks.
 constexpr uint32_t k_cpu_columns = 4, k_cpu_rows = 64, k_gpu_columns = 1, k_gpu_rows = 16;
@@ -137,24 +138,60 @@ Status Rasteriser::make_pipelines() {
 }
 
 Status Rasteriser::set_geometry(const GeometryData& data) {
-    if (data.vertices.size() > device_.limits.texel_elements)
+    const uint64_t vertex_count = data.vertices.size() + uint64_t(data.reserved_points),
+                   owner_count = data.owners.size() + uint64_t(data.reserved_points);
+    if (vertex_count > device_.limits.texel_elements)
         return fail(ErrorId::limit_exceeded, "", "geometry",
-                    std::to_string(data.vertices.size()) + " vertices in one scene",
+                    std::to_string(vertex_count) + " vertices in one scene",
                     "this device takes " + std::to_string(device_.limits.texel_elements));
     vkDeviceWaitIdle(device_.handle);
-    COPPICE_TRY(
-        gpu::Buffer vertices,
-        gpu::Buffer::create(device_, texel_buffer(data.vertices.size_bytes(), VK_FORMAT_R32G32B32A32_UINT,
-                                                  gpu::MemoryUse::device, "vertices")));
+    COPPICE_TRY(gpu::Buffer vertices,
+                gpu::Buffer::create(device_, texel_buffer(vertex_count * sizeof(PackedVertex),
+                                                          VK_FORMAT_R32G32B32A32_UINT,
+                                                          gpu::MemoryUse::device, "vertices")));
     COPPICE_TRY(gpu::Buffer owners,
-                gpu::Buffer::create(device_, texel_buffer(data.owners.size_bytes(), VK_FORMAT_R32_UINT,
+                gpu::Buffer::create(device_, texel_buffer(owner_count * sizeof(uint32_t), VK_FORMAT_R32_UINT,
                                                           gpu::MemoryUse::device, "owners")));
+    if (data.reserved_points > 0)
+        for (Slot& slot : slots_) {
+            if (slot.uploads.size_bytes() >= k_upload_bytes) continue;
+            gpu::BufferSettings settings = device_buffer(k_upload_bytes, "uploads");
+            settings.memory = gpu::MemoryUse::upload;
+            COPPICE_TRY(slot.uploads, gpu::Buffer::create(device_, settings));
+        }
     if (!data.vertices.empty())
         COPPICE_CHECK(gpu::upload_now(device_, vertices, 0, std::as_bytes(data.vertices)));
     if (!data.owners.empty()) COPPICE_CHECK(gpu::upload_now(device_, owners, 0, std::as_bytes(data.owners)));
     vertices_ = std::move(vertices);
     owners_ = std::move(owners);
+    vertex_uploads_.clear();
+    owner_uploads_.clear();
+    upload_bytes_ = 0;
     return {};
+}
+
+bool Rasteriser::stream_points(uint32_t slot, uint32_t first_vertex, std::span<const PackedVertex> points,
+                               uint32_t first_owner, std::span<const uint32_t> owners) {
+    const gpu::Buffer& ring = slots_[slot].uploads;
+    if (points.size_bytes() + owners.size_bytes() > ring.size_bytes() - upload_bytes_ || !ring.mapped())
+        return false;
+    auto stage = [&](auto items, uint64_t first_item, std::vector<VkBufferCopy>& uploads) {
+        if (items.empty()) return;
+        std::memcpy(ring.mapped() + upload_bytes_, items.data(), items.size_bytes());
+        uploads.push_back({upload_bytes_, first_item * sizeof(items[0]), items.size_bytes()});
+        upload_bytes_ += items.size_bytes();
+    };
+    stage(points, first_vertex, vertex_uploads_);
+    stage(owners, first_owner, owner_uploads_);
+    return true;
+}
+
+Status Rasteriser::upload_points(uint32_t first_vertex, std::span<const PackedVertex> points,
+                                 uint32_t first_owner, std::span<const uint32_t> owners) {
+    if (points.empty()) return {};
+    COPPICE_CHECK(gpu::upload_now(device_, vertices_, uint64_t(first_vertex) * sizeof(PackedVertex),
+                                  std::as_bytes(points)));
+    return gpu::upload_now(device_, owners_, uint64_t(first_owner) * sizeof(uint32_t), std::as_bytes(owners));
 }
 
 Status Rasteriser::resize(uint32_t width, uint32_t height) {
@@ -235,11 +272,26 @@ void Rasteriser::draw(VkCommandBuffer commands, WorkKind kind) {
 
 void Rasteriser::add_passes() {
     visibility_resource_ = graph_.add_buffer("visibility", &visibility_);
+    vertices_resource_ = graph_.add_buffer("vertices", &vertices_);
+    owners_resource_ = graph_.add_buffer("owners", &owners_);
     big_resource_ = graph_.add_buffer("big triangles", &big_triangles_);
     color_resource_ = graph_.add_buffer("color", &color_);
     radiance_resource_ = graph_.add_buffer("radiance", &radiance_);
     big_count_resource_ = graph_.add_buffer("big count", &slots_[0].big_count);
 
+    upload_pass_ = graph_.add_pass(
+        "stream in",
+        {{vertices_resource_, BufferAccess::transfer_write}, {owners_resource_, BufferAccess::transfer_write}},
+        [this](VkCommandBuffer commands) {
+            const VkBuffer ring = slots_[slot_].uploads.handle();
+            vkCmdCopyBuffer(commands, ring, vertices_.handle(), uint32_t(vertex_uploads_.size()),
+                            vertex_uploads_.data());
+            vkCmdCopyBuffer(commands, ring, owners_.handle(), uint32_t(owner_uploads_.size()),
+                            owner_uploads_.data());
+            vertex_uploads_.clear();
+            owner_uploads_.clear();
+            upload_bytes_ = 0;
+        });
     clear_pass_ = graph_.add_pass(
         "clear",
         {{visibility_resource_, BufferAccess::transfer_write}, {big_resource_, BufferAccess::transfer_write}},
@@ -248,6 +300,8 @@ void Rasteriser::add_passes() {
             vkCmdFillBuffer(commands, big_triangles_.handle(), 0, 16, 0);
         });
     auto add_draw = [this](const char* name, WorkKind kind, std::vector<ResourceUse> uses) {
+        uses.push_back({vertices_resource_, BufferAccess::compute_read});
+        uses.push_back({owners_resource_, BufferAccess::compute_read});
         draw_passes_[size_t(kind)] = graph_.add_pass(
             name, std::move(uses), [this, kind](VkCommandBuffer commands) { draw(commands, kind); });
     };
@@ -256,7 +310,9 @@ void Rasteriser::add_passes() {
               {big_resource_, BufferAccess::compute_read_write}});
     big_pass_ = graph_.add_pass(
         "big triangles",
-        {{visibility_resource_, BufferAccess::compute_atomic}, {big_resource_, BufferAccess::compute_read}},
+        {{visibility_resource_, BufferAccess::compute_atomic},
+         {big_resource_, BufferAccess::compute_read},
+         {vertices_resource_, BufferAccess::compute_read}},
         [this](VkCommandBuffer commands) {
             const Slot& slot = slots_[slot_];
             const gpu::Buffer* buffers[] = {&visibility_, &vertices_, &slot.entries, &slot.instances,
@@ -353,11 +409,12 @@ void Rasteriser::set_frame(uint32_t slot, const WorkList::Layout& layout, const 
     graph_.set_active(big_count_pass_, any);
     graph_.set_active(clear_pass_, true);
     graph_.set_active(resolve_pass_, true);
+    graph_.set_active(upload_pass_, upload_bytes_ > 0);
 }
 
 void Rasteriser::skip_frame() {
     for (uint32_t pass : draw_passes_) graph_.set_active(pass, false);
-    for (uint32_t pass : {clear_pass_, big_pass_, big_count_pass_, accumulate_pass_, resolve_pass_})
+    for (uint32_t pass : {upload_pass_, clear_pass_, big_pass_, big_count_pass_, accumulate_pass_, resolve_pass_})
         graph_.set_active(pass, false);
 }
 
@@ -365,7 +422,8 @@ uint64_t Rasteriser::gpu_bytes() const {
     uint64_t total = visibility_.size_bytes() + color_.size_bytes() + radiance_.size_bytes() +
                      vertices_.size_bytes() + owners_.size_bytes() + big_triangles_.size_bytes();
     for (const Slot& slot : slots_)
-        total += slot.instances.size_bytes() + slot.entries.size_bytes() + slot.light.size_bytes();
+        total += slot.instances.size_bytes() + slot.entries.size_bytes() + slot.light.size_bytes() +
+                 slot.uploads.size_bytes();
     return total;
 }
 

@@ -15,6 +15,7 @@ namespace coppice {
 struct GeometryData {
     std::span<const PackedVertex> vertices;
     std::span<const uint32_t> owners;
+    uint32_t reserved_points = 0;  // room behind both for points and owners that come later
 };
 
 // How the frame's surfaces become a picture.
@@ -36,6 +37,14 @@ class Rasteriser {
     // Both wait for the device. Errors: limit_exceeded, device_lost.
     Status set_geometry(const GeometryData& data);
     Status resize(uint32_t width, uint32_t height);
+
+    // Points and their owners into the room that was reserved, by this slot's frame, before it draws: through a ring of
+    // mapped memory. False: no more room in the ring for this frame. Requires places inside the geometry.
+    bool stream_points(uint32_t slot, uint32_t first_vertex, std::span<const PackedVertex> points,
+                       uint32_t first_owner, std::span<const uint32_t> owners);
+    // The same at once; waits for the device.
+    Status upload_points(uint32_t first_vertex, std::span<const PackedVertex> points, uint32_t first_owner,
+                         std::span<const uint32_t> owners);
 
     // One frame: choose the slot, write into its mapped buffers, then say what was written. The passes are recorded
     // when the frame graph is.
@@ -75,6 +84,7 @@ class Rasteriser {
     };
     struct Slot {
         gpu::Buffer instances, entries, light;
+        gpu::Buffer uploads;  // what is streamed in
         gpu::Buffer
             big_count;  // how many large triangles the frame had; read when the slot comes round again
     };
@@ -96,12 +106,15 @@ class Rasteriser {
     gpu::Pipeline big_pipeline_, resolve_pipeline_, accumulate_pipeline_, resolve_mean_pipeline_;
     ResourceIndex visibility_resource_ = 0, color_resource_ = 0, radiance_resource_ = 0, big_resource_ = 0;
     std::array<uint32_t, k_work_kinds> draw_passes_{};
-    uint32_t clear_pass_ = 0, big_pass_ = 0, big_count_pass_ = 0, accumulate_pass_ = 0, resolve_pass_ = 0;
+    ResourceIndex vertices_resource_ = 0, owners_resource_ = 0;
+    uint32_t upload_pass_ = 0, clear_pass_ = 0, big_pass_ = 0, big_count_pass_ = 0, accumulate_pass_ = 0, resolve_pass_ = 0;
     ResourceIndex big_count_resource_ = 0;
     uint32_t big_limit_ = 0, dropped_triangles_ = 0;
 
     // Of the frame about to be recorded.
     uint32_t slot_ = 0;
+    std::vector<VkBufferCopy> vertex_uploads_, owner_uploads_;
+    uint64_t upload_bytes_ = 0;  // of the slot's ring
     WorkList::Layout layout_{};
     RasterConstants raster_{};
     ResolveConstants resolve_{};

@@ -5,22 +5,42 @@
 #include "plugins/vegetation/plant/direction_form.h"
 
 namespace coppice {
+void set_cloud(SceneGeometry& geometry, uint32_t index, const TileCloud& cloud) {
+    DrawCloud& drawn = geometry.clouds[index];
+    drawn.part = cloud.part;
+    drawn.mean_area_m2 = float(mean_over_directions(cloud.part.projected_area_m2));
+    drawn.densities.assign(cloud.densities.begin(), cloud.densities.end());
+    drawn.geometry.point_count = uint32_t(cloud.points.size());
+}
 
 Result<SceneGeometry> gather_geometry(const Scene& scene, std::span<const Plant> plants,
                                       std::span<const TileNode> tiles) {
+    const std::vector<Ground> grounds = make_grounds(scene.terrain);
+    GeometrySource source{scene.path, scene.models, plants, {}, 0, grounds};
+    for (const TileNode& tile : tiles) source.clouds.push_back(&tile.cloud);
+    return gather_geometry(source);
+}
+
+Result<SceneGeometry> gather_geometry(const GeometrySource& source) {
+    const std::span<const Plant> plants = source.plants;
     SceneGeometry geometry;
-    uint64_t vertex_count = scene.terrain ? scene.terrain->vertices().size() : 0, owner_count = 0;
+    const uint64_t reserved = uint64_t(source.streamed_clouds) * k_cloud_points;
+    uint64_t vertex_count = 0, owner_count = 0;
+    for (const Ground& ground : source.grounds)
+        vertex_count +=
+            ground.coarse.vertices.size() + (ground.terrain ? ground.terrain->vertices().size() : 0);
     for (const Plant& plant : plants) {
         vertex_count += plant.triangle_vertices.size() + plant.points.size() + plant.line_vertices.size();
         owner_count += plant.point_owners.size();
     }
-    for (const TileNode& tile : tiles) {
-        vertex_count += tile.cloud.points.size();
-        owner_count += tile.cloud.points.size();
+    for (const TileCloud* cloud : source.clouds) {
+        vertex_count += cloud->points.size();
+        owner_count += cloud->points.size();
     }
-    if (vertex_count > UINT32_MAX)
-        return fail(ErrorId::limit_exceeded, scene.path, "plants", std::to_string(vertex_count) + " vertices",
-                    "a scene may hold 4294967295 in all its models");
+    if (vertex_count + reserved > UINT32_MAX)
+        return fail(ErrorId::limit_exceeded, source.path, "plants",
+                    std::to_string(vertex_count + reserved) + " vertices",
+                    "a scene may hold 4294967295 in all its models, grounds and tiles in memory");
     geometry.vertices.reserve(vertex_count);
     geometry.owners.reserve(owner_count);
     auto append = [&geometry](std::span<const PackedVertex> vertices) {
@@ -48,7 +68,7 @@ Result<SceneGeometry> gather_geometry(const Scene& scene, std::span<const Plant>
         uint32_t first_owner = uint32_t(geometry.owners.size());
         geometry.owners.insert(geometry.owners.end(), plant.point_owners.begin(), plant.point_owners.end());
         auto add_part = [&](PackedPart part) {
-            part.importance *= i < scene.models.size() ? scene.models[i].importance : 1.0f;
+            part.importance *= i < source.models.size() ? source.models[i].importance : 1.0f;
             geometry.least_importance = std::min(geometry.least_importance, part.importance);
             geometry.part_geometry.push_back(
                 {first_triangle_vertex + part.first_triangle * 3, first_point + part.first_point,
@@ -72,17 +92,29 @@ Result<SceneGeometry> gather_geometry(const Scene& scene, std::span<const Plant>
         model.has_cells = !plant.cells.empty();
         geometry.models.push_back(model);
     }
-    for (const TileNode& tile : tiles) {
+    for (const TileCloud* cloud : source.clouds) {
         PartGeometry place{};
-        place.first_point = append(tile.cloud.points);
-        place.point_count = uint32_t(tile.cloud.points.size());
+        place.first_point = append(cloud->points);
         place.first_owner = uint32_t(geometry.owners.size());
-        for (float density : tile.cloud.densities)
-            geometry.owners.push_back(std::bit_cast<uint32_t>(density));
-        const float mean_area_m2 = float(mean_over_directions(tile.cloud.part.projected_area_m2));
-        geometry.clouds.push_back({tile.cloud.part, mean_area_m2, tile.cloud.densities, place});
+        for (float density : cloud->densities) geometry.owners.push_back(std::bit_cast<uint32_t>(density));
+        geometry.clouds.push_back({{}, 0.0f, {}, place});
+        set_cloud(geometry, uint32_t(geometry.clouds.size() - 1), *cloud);
     }
-    if (scene.terrain) geometry.first_terrain_vertex = append(scene.terrain->vertices());
+    for (const Ground& ground : source.grounds) {
+        DrawGround drawn;
+        drawn.terrain = ground.terrain;
+        if (ground.terrain) drawn.first_vertex = append(ground.terrain->vertices());
+        drawn.first_coarse_vertex = append(ground.coarse.vertices);
+        drawn.coarse_levels = ground.coarse.levels;
+        geometry.grounds.push_back(drawn);
+    }
+    geometry.reserved_points = uint32_t(reserved);
+    for (uint32_t i = 0; i < source.streamed_clouds; ++i) {
+        PartGeometry place{};
+        place.first_point = uint32_t(geometry.vertices.size()) + i * k_cloud_points;
+        place.first_owner = uint32_t(geometry.owners.size()) + i * k_cloud_points;
+        geometry.clouds.push_back({{}, 0.0f, {}, place});
+    }
     return geometry;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 #include <span>
 #include <vector>
+#include "plugins/vegetation/cull/list_grounds.h"
 #include "plugins/vegetation/draw/rasteriser.h"
 #include "plugins/vegetation/eco/scene.h"
 #include "plugins/vegetation/eco/tile_tree.h"
@@ -37,9 +38,18 @@ struct DrawCloud {
     PartGeometry geometry;
 };
 
+// A ground's place in the geometry buffer.
+struct DrawGround {
+    std::shared_ptr<const Terrain> terrain;  // may be null
+    uint32_t first_vertex = 0, first_coarse_vertex = 0;
+    std::vector<CoarseGround::Level> coarse_levels;
+};
+
 struct SceneGeometry {
     std::vector<DrawModel> models;
-    std::vector<DrawCloud> clouds;  // of the tree's nodes, in order
+    // Those given, then empty ones for what is streamed in: set_cloud.
+    std::vector<DrawCloud> clouds;
+    std::vector<DrawGround> grounds;
     // Of each model its parts, then their cells; importance times the scene's.
     std::vector<PackedPart> parts;
     std::vector<PartGeometry> part_geometry;
@@ -47,14 +57,29 @@ struct SceneGeometry {
     std::vector<PartSphere> part_spheres;
     // For widest_spread_px.
     float least_importance = 1.0f, most_line_width = 1.0f;
-    uint32_t first_terrain_vertex = 0;
     // Until uploaded.
     std::vector<PackedVertex> vertices;
     std::vector<uint32_t> owners;
+    uint32_t reserved_points = 0;  // behind both, for the streamed clouds
 };
 
-// plants[i] belongs to scene.models[i]. Errors: limit_exceeded beyond 2^32 vertices.
+struct GeometrySource {
+    std::string path;  // for messages
+    std::span<const SceneModel> models;
+    std::span<const Plant> plants;         // plants[i] belongs to models[i]
+    std::vector<const TileCloud*> clouds;  // always drawable
+    uint32_t streamed_clouds = 0;          // room for so many more of k_cloud_points
+    std::span<const Ground> grounds;
+};
+
+// Errors: limit_exceeded beyond 2^32 vertices.
+Result<SceneGeometry> gather_geometry(const GeometrySource& source);
+// Of a scene whose tiles are all in memory.
 Result<SceneGeometry> gather_geometry(const Scene& scene, std::span<const Plant> plants,
                                       std::span<const TileNode> tiles = {});
+
+// What is drawn for geometry.clouds[index], whose points and densities lie where its geometry says. Requires at most
+// k_cloud_points of a streamed one.
+void set_cloud(SceneGeometry& geometry, uint32_t index, const TileCloud& cloud);
 
 }  // namespace coppice

@@ -35,7 +35,7 @@ double key_slope(double secant_before, double secant_after, double span_before, 
     return (w1 + w2) / (w1 / secant_before + w2 / secant_after);
 }
 
-CameraKey read_key(JsonObject object, const Terrain* terrain) {
+CameraKey read_key(JsonObject object, const GroundHeight& ground) {
     constexpr float k_radians = k_pi / 180.0f;
     CameraKey key{};
     key.time_s = object.number("time_s", 0.0, 1e6);
@@ -44,10 +44,8 @@ CameraKey read_key(JsonObject object, const Terrain* terrain) {
         const nlohmann::json* at = object.find(at_name);
         if (at && at->is_array() && at->size() == 2) {
             auto xz = object.numbers(at_name, 2, -k_farthest_m, k_farthest_m);
-            return dvec3(
-                xz[0],
-                ground_height(terrain, xz[0], xz[1]) + object.number(above_name, -1e5, 1e5, above_otherwise),
-                xz[1]);
+            return dvec3(xz[0], ground(xz[0], xz[1]) + object.number(above_name, -1e5, 1e5, above_otherwise),
+                         xz[1]);
         }
         auto xyz = object.numbers(at_name, 3, -k_farthest_m, k_farthest_m);
         return dvec3(xyz[0], xyz[1], xyz[2]);
@@ -111,12 +109,12 @@ Camera camera_at(const std::vector<CameraKey>& path, double time_s) {
     return camera;
 }
 
-std::vector<CameraKey> read_camera_keys(std::vector<JsonObject> objects, const Terrain* terrain) {
+std::vector<CameraKey> read_camera_keys(std::vector<JsonObject> objects, const GroundHeight& ground) {
     std::vector<CameraKey> keys;
     if (objects.empty()) return keys;
     JsonDocument& document = objects.front().document();
     for (size_t i = 0; i < std::min(objects.size(), k_key_limit); ++i) {
-        keys.push_back(read_key(objects[i], terrain));
+        keys.push_back(read_key(objects[i], ground));
         if (i > 0 && !(keys[i].time_s > keys[i - 1].time_s))
             document.report(ErrorId::value_out_of_range, objects[i].place_of("time_s"),
                             fmt::format("{:g} s after {:g} s", keys[i].time_s, keys[i - 1].time_s),
@@ -128,15 +126,35 @@ std::vector<CameraKey> read_camera_keys(std::vector<JsonObject> objects, const T
     return keys;
 }
 
-Result<std::vector<CameraKey>> load_camera_path(const std::string& path, const Terrain* terrain) {
+Result<std::vector<CameraKey>> load_camera_path(const std::string& path, const GroundHeight& ground) {
     COPPICE_TRY(std::string text, read_text_file(path));
     COPPICE_TRY(JsonDocument document, JsonDocument::parse(text, path));
     JsonObject root(document, document.root(), "");
-    std::vector<CameraKey> keys = read_camera_keys(root.objects("keys"), terrain);
+    std::vector<CameraKey> keys = read_camera_keys(root.objects("keys"), ground);
     root.close();
     if (keys.empty()) root.report(ErrorId::syntax, "keys", "no key", "write at least one key");
     COPPICE_CHECK(document.status());
     return keys;
+}
+
+Result<std::vector<CameraKey>> read_camera_path(JsonObject& root, const std::filesystem::path& folder,
+                                                const GroundHeight& ground) {
+    const nlohmann::json* value = root.find("camera_path");
+    if (value && value->is_string())
+        return load_camera_path((folder / value->get<std::string>()).lexically_normal().string(), ground);
+    std::vector<CameraKey> keys;
+    if (value) keys = read_camera_keys(root.objects("camera_path"), ground);
+    COPPICE_CHECK(root.document().status());
+    if (keys.empty()) {
+        Camera camera;
+        camera.position_world.y += ground(0.0, 0.0);
+        keys.push_back({0.0, camera});
+    }
+    return keys;
+}
+
+Result<std::vector<CameraKey>> load_camera_path(const std::string& path, const Terrain* terrain) {
+    return load_camera_path(path, height_of(terrain));
 }
 
 }  // namespace coppice

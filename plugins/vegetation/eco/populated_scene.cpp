@@ -1,10 +1,11 @@
 #include "plugins/vegetation/eco/populated_scene.h"
 
+#include <algorithm>
 #include <cassert>
-#include <charconv>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include "plugins/shared/json_object.h"
+#include "plugins/vegetation/eco/mosaic.h"
 #include "runtime/core/file.h"
 #include "runtime/core/hash.h"
 
@@ -74,14 +75,24 @@ CameraKey read_key(JsonObject object) {
     return key;
 }
 
-// 16 hexadecimal digits.
-uint64_t read_hash(JsonObject& object, const char* key) {
-    const std::string text = object.text(key);
-    uint64_t hash = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), hash, 16);
-    if (text.size() != 16 || error != std::errc() || end != text.data() + text.size())
-        object.report(ErrorId::value_out_of_range, key, "\"" + text + "\" is no content hash", k_remedy);
-    return hash;
+void read_packs(JsonObject& root, const std::filesystem::path& folder, PopulatedScene& populated) {
+    auto resolve = [&folder](const std::string& name) { return (folder / name).lexically_normal().string(); };
+    for (JsonObject& object : root.objects("packs")) {
+        ScenePack& pack = populated.packs.emplace_back();
+        pack.path = resolve(object.text("file"));
+        pack.content_hash = read_content_hash(object);
+        pack.plant_count = object.whole("plants", 0, k_most_count);
+        pack.triangle_count = object.whole("triangles", 0, k_most_count);
+        object.close();
+    }
+    for (JsonObject& object : root.objects("plants")) {
+        SceneModel& model = populated.scene.models.emplace_back();
+        model.name = object.text("name");
+        model.source_path = resolve(object.text("file"));
+        populated.model_content_hashes.push_back(read_content_hash(object));
+        model.importance = object.real("importance", 0.001f, 1000.0f);
+        object.close();
+    }
 }
 
 }  // namespace
@@ -101,13 +112,15 @@ std::string write_populated_scene(const PopulatedScene& populated) {
                           {"content", hash_to_hex(populated.model_content_hashes[m])},
                           {"importance", scene.models[m].importance}});
     for (const CameraKey& key : scene.camera_path) keys.push_back(json_of(key));
-    ordered_json root = {{"populated", k_format},
-                         {"name", scene.name},
-                         {"packs", std::move(packs)},
-                         {"plants", std::move(plants)},
-                         {"light", json_of(scene.light)},
-                         {"camera_path", std::move(keys)},
-                         {"sample_distance_px", scene.sample_distance_px}};
+    ordered_json root = {{"populated", k_format}, {"name", scene.name}};
+    if (populated.mosaic.empty()) {
+        root["packs"] = std::move(packs);
+        root["plants"] = std::move(plants);
+    }
+    for (const PlacedScene& placed : populated.mosaic) root["mosaic"].push_back(json_of(placed));
+    root["light"] = json_of(scene.light);
+    root["camera_path"] = std::move(keys);
+    root["sample_distance_px"] = scene.sample_distance_px;
     if (!populated.terrain_json.empty()) root["terrain"] = nlohmann::json::parse(populated.terrain_json);
     // A name that is not UTF-8 must not throw.
     return root.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
@@ -117,33 +130,21 @@ Result<PopulatedScene> load_populated_scene(const std::string& path, const Terra
     COPPICE_TRY(const std::string text, read_text_file(path));
     COPPICE_TRY(JsonDocument document, JsonDocument::parse(text, path));
     const std::filesystem::path folder = std::filesystem::path(path).parent_path();
-    auto resolve = [&folder](const std::string& name) { return (folder / name).lexically_normal().string(); };
     JsonObject root(document, document.root(), "");
     if (!root.has("populated"))
         return fail(ErrorId::format_unknown, path, "", "not a populated scene",
                     "name the scene.json of a folder that coppice populate made");
     root.whole("populated", k_format, k_format);
     PopulatedScene populated;
+    populated.content_hash = hash_text(text);
     Scene& scene = populated.scene;
     scene.path = path;
     scene.name = root.text("name");
     scene.sample_distance_px = root.real("sample_distance_px", 0.01f, 1000.0f);
-    for (JsonObject& object : root.objects("packs")) {
-        ScenePack& pack = populated.packs.emplace_back();
-        pack.path = resolve(object.text("file"));
-        pack.content_hash = read_hash(object, "content");
-        pack.plant_count = object.whole("plants", 0, k_most_count);
-        pack.triangle_count = object.whole("triangles", 0, k_most_count);
-        object.close();
-    }
-    for (JsonObject& object : root.objects("plants")) {
-        SceneModel& model = scene.models.emplace_back();
-        model.name = object.text("name");
-        model.source_path = resolve(object.text("file"));
-        populated.model_content_hashes.push_back(read_hash(object, "content"));
-        model.importance = object.real("importance", 0.001f, 1000.0f);
-        object.close();
-    }
+    if (root.has("mosaic"))
+        populated.mosaic = read_placed_scenes(root, folder, true);
+    else
+        read_packs(root, folder, populated);
     scene.light = read_light(root.object("light"));
     for (JsonObject& object : root.objects("camera_path")) {
         const CameraKey key = read_key(object);
@@ -153,7 +154,7 @@ Result<PopulatedScene> load_populated_scene(const std::string& path, const Terra
     }
     if (scene.camera_path.empty())
         root.report(ErrorId::value_out_of_range, "camera_path", "no key", k_remedy);
-    const nlohmann::json* ground = root.find("terrain");
+    const nlohmann::json* ground = populated.mosaic.empty() ? root.find("terrain") : nullptr;
     root.close();
     COPPICE_CHECK(document.status());
     if (!ground) return populated;
@@ -164,23 +165,26 @@ Result<PopulatedScene> load_populated_scene(const std::string& path, const Terra
     return populated;
 }
 
-Result<std::vector<TilePack>> open_packs(const PopulatedScene& populated, std::span<const Plant> plants) {
+Status check_plants(const PopulatedScene& populated, std::span<const Plant> plants) {
     const std::vector<SceneModel>& models = populated.scene.models;
     assert(plants.size() == models.size());
     for (size_t m = 0; m < models.size(); ++m)
         if (plants[m].content_hash != populated.model_content_hashes[m])
             return fail(ErrorId::file_corrupt, models[m].source_path, "",
                         "not the plant the scene was populated with", k_remedy);
+    return {};
+}
+
+Result<std::vector<TilePack>> open_packs(const PopulatedScene& populated) {
     std::vector<TilePack> packs;
     for (const ScenePack& expected : populated.packs) {
         COPPICE_TRY(TilePack pack, open_tile_pack(expected.path));
         if (pack.content_hash != expected.content_hash)
             return fail(ErrorId::file_corrupt, expected.path, "head",
                         "not the tiles the scene was populated with", k_remedy);
-        bool same_models = pack.models.size() == models.size();
-        for (size_t m = 0; same_models && m < models.size(); ++m)
-            same_models = pack.models[m].content_hash == plants[m].content_hash;
-        if (!same_models)
+        auto same = [](const TileModel& model, uint64_t hash) { return model.content_hash == hash; };
+        if (!std::equal(pack.models.begin(), pack.models.end(), populated.model_content_hashes.begin(),
+                        populated.model_content_hashes.end(), same))
             return fail(ErrorId::file_corrupt, expected.path, "models", "not the plants of the scene",
                         k_remedy);
         packs.push_back(std::move(pack));

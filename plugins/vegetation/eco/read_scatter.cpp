@@ -1,6 +1,7 @@
 #include "plugins/vegetation/eco/read_scatter.h"
 
 #include <fmt/format.h>
+#include "plugins/shared/noise.h"
 #include "runtime/core/hash.h"
 
 namespace coppice {
@@ -77,12 +78,19 @@ void read_heights(JsonObject& object, ScatterSettings& s) {
 void read_noise(JsonObject noise, ScatterSettings& s) {
     s.noisy = true;
     s.noise.wavelength_m = noise.real("wavelength_m", 0.01f, 1e6f, s.noise.wavelength_m);
+    s.noise.period_m = noise.number("period_m", 0.0, 1e6, 0.0);
     s.noise.from = noise.real("from", -2.0f, 3.0f, -2.0f);
     s.noise.to = noise.real("to", -2.0f, 3.0f, 3.0f);
     s.noise.softness = noise.real("softness", 0.0f, 1.0f, s.noise.softness);
     s.noise.octaves = uint32_t(noise.whole("octaves", 1, 12, s.noise.octaves));
     s.noise.seed = uint32_t(noise.whole("seed", 0, UINT32_MAX, 1));
     check_range(noise, "from", s.noise.from, s.noise.to);
+    if (s.noise.period_m > 0.0 && !(s.noise.period_m >= double(s.noise.wavelength_m)))
+        noise.report(ErrorId::value_out_of_range, "period_m", "shorter than a wave", "at least wavelength_m");
+    if (std::ldexp(s.noise.period_m / double(s.noise.wavelength_m), int(s.noise.octaves)) >
+        k_longest_noise_period)
+        noise.report(ErrorId::value_out_of_range, "period_m", "too many of the last octave's waves",
+                     "fewer octaves or a longer wavelength_m");
     noise.close();
 }
 

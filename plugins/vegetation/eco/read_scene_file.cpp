@@ -6,6 +6,7 @@
 #include "plugins/vegetation/eco/ground_height.h"
 #include "plugins/vegetation/eco/measure_population.h"
 #include "plugins/vegetation/eco/quantise.h"
+#include "plugins/vegetation/eco/read_light.h"
 #include "plugins/vegetation/eco/read_placements_csv.h"
 #include "plugins/vegetation/eco/read_references.h"
 #include "plugins/vegetation/eco/read_scatter.h"
@@ -35,18 +36,25 @@ class SceneReader {
     }
 
     Result<SceneFile> read() {
+        if (root_.has("mosaic"))
+            return fail(ErrorId::limit_exceeded, scene_.path, "mosaic",
+                        role_ == SceneRole::root ? "a mosaic of scenes is never loaded as a whole"
+                                                 : "a mosaic of scenes cannot be referred to",
+                        role_ == SceneRole::root
+                            ? "populate it with coppice populate, then play the scene.json of that folder"
+                            : "refer to its scenes, or make a mosaic of both");
         scene_.name = root_.text("name", std::filesystem::path(scene_.path).stem().stem().string());
         scene_.sample_distance_px = root_.real("sample_distance_px", 0.01f, 1000.0f, 1.0f);
         // A scene may consist of other scenes alone.
         const bool refers = root_.has("references");
         if (!refers || root_.has("plants")) read_plants(root_.object("plants"));
         read_regions();
-        read_light();
+        scene_.light = read_light(root_);
         const nlohmann::json* terrain = root_.find("terrain");
         std::vector<JsonObject> placements;
         if (!refers || root_.has("placements")) placements = root_.objects("placements");
         if (refers) file_.references = read_references(root_.objects("references"), folder_);
-        const nlohmann::json* camera_path = root_.find("camera_path");
+        root_.has("camera_path");
         root_.close();
         COPPICE_CHECK(document_.status());
         COPPICE_CHECK(quantise_plants());
@@ -55,7 +63,10 @@ class SceneReader {
         else if (terrain)
             COPPICE_CHECK(load_terrain(*terrain));
         for (JsonObject& entry : placements) COPPICE_CHECK(read_placement(entry));
-        if (role_ == SceneRole::root) COPPICE_CHECK(read_camera_path(camera_path));
+        if (role_ == SceneRole::root) {
+            COPPICE_TRY(scene_.camera_path,
+                        read_camera_path(root_, folder_, height_of(scene_.terrain.get())));
+        }
         return std::move(file_);
     }
 
@@ -136,36 +147,6 @@ class SceneReader {
         // Names refer to shapes only, never to each other: nothing can be circular.
         for (const auto& [name, value] : regions->items())
             names_.regions[name] = read_region(document_, value, object.place_of(name.c_str()));
-    }
-
-    void read_light() {
-        Light& light = scene_.light;
-        if (const nlohmann::json* sun = root_.find("sun"); sun && sun->is_null()) {
-            light.direction_to_sun = vec3(0.0f);
-        } else if (sun) {
-            JsonObject object = root_.object("sun");
-            float azimuth = object.real("azimuth_deg", -360.0f, 360.0f, 137.0f) * k_radians;
-            float elevation = object.real("elevation_deg", -90.0f, 90.0f, 49.0f) * k_radians;
-            light.direction_to_sun =
-                vec3(portable_sin(azimuth) * portable_cos(elevation), portable_sin(elevation),
-                     -portable_cos(azimuth) * portable_cos(elevation));
-            light.sun_color = object.color("color", 100.0f, light.sun_color);
-            object.close();
-        }
-        if (root_.has("sky")) {
-            JsonObject object = root_.object("sky");
-            light.sky_zenith_color = object.color("zenith", 100.0f, light.sky_zenith_color);
-            light.sky_horizon_color = object.color("horizon", 100.0f, light.sky_horizon_color);
-            light.ground_color = object.color("ground", 100.0f, light.ground_color);
-            object.close();
-        }
-        if (root_.has("haze")) {
-            JsonObject object = root_.object("haze");
-            light.haze_color = object.color("color", 100.0f, light.haze_color);
-            light.haze_density_per_m = object.real("density_per_m", 0.0f, 10.0f, light.haze_density_per_m);
-            object.close();
-        }
-        light.exposure = root_.real("exposure", 0.001f, 1000.0f, 1.0f);
     }
 
     Status load_terrain(const nlohmann::json& terrain) {
@@ -253,21 +234,6 @@ class SceneReader {
         COPPICE_CHECK(document_.status());
         COPPICE_TRY(std::vector<Placement> plants, read_placements_csv(resolve(name), settings));
         return add(std::move(plants), entry.place_of("csv"));
-    }
-
-    Status read_camera_path(const nlohmann::json* value) {
-        if (value && value->is_string()) {
-            COPPICE_TRY(scene_.camera_path,
-                        load_camera_path(resolve(value->get<std::string>()), scene_.terrain.get()));
-            return {};
-        }
-        if (value) scene_.camera_path = read_camera_keys(root_.objects("camera_path"), scene_.terrain.get());
-        if (scene_.camera_path.empty()) {
-            Camera camera;
-            camera.position_world.y += ground_height(scene_.terrain.get(), 0.0, 0.0);
-            scene_.camera_path.push_back({0.0, camera});
-        }
-        return document_.status();
     }
 
     JsonDocument& document_;

@@ -72,7 +72,8 @@ class Ground {
     float noise_density(dvec2 p) const {
         const DensityNoise& n = s_.noise;
         double length = double(n.wavelength_m);
-        float value = 0.5f + fractal_noise(p.x / length, p.y / length, n.octaves, 0.55f, n.seed);
+        float value =
+            0.5f + fractal_noise(p.x / length, p.y / length, n.octaves, 0.55f, n.seed, n.period_m / length);
         return smooth_step(n.from - n.softness, n.from + n.softness, value) *
                (1.0f - smooth_step(n.to - n.softness, n.to + n.softness, value));
     }

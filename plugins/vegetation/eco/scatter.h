@@ -25,6 +25,7 @@ struct DensityNoise {
     float softness = 0.05f;  // of the noise, over which density falls to zero
     uint32_t octaves = 3;
     uint32_t seed = 1;
+    double period_m = 0.0;  // the noise repeats after it, for periodic ground; 0: it never does
 };
 
 struct ScatterSettings {

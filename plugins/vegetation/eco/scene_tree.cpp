@@ -1,7 +1,6 @@
 #include "plugins/vegetation/eco/scene_tree.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <map>
 #include <tuple>
 #include <fmt/format.h>
@@ -12,13 +11,6 @@ namespace {
 
 constexpr double k_reach_limit_m = 2.0 * k_farthest_m;
 constexpr double k_scale_product_least = 1e-6, k_scale_product_most = 1e6;
-
-// However a path is written, one file has one name.
-std::string file_key(const std::string& path) {
-    std::error_code error;
-    std::filesystem::path key = std::filesystem::weakly_canonical(path, error);
-    return error ? path : key.string();
-}
 
 class TreeReader {
   public:
@@ -31,12 +23,8 @@ class TreeReader {
     }
 
   private:
-    struct Link {
-        std::string path, key;
-    };
-
     Result<uint32_t> add(SceneFile file, const std::string& key) {
-        chain_.push_back({file.scene.path, key});
+        chain_.enter(file.scene.path);
         SceneNode node;
         node.file = std::move(file);
         COPPICE_CHECK(add_own(node));
@@ -49,14 +37,14 @@ class TreeReader {
             node.children.push_back(child);
         }
         node.file.references = std::move(kept);
-        chain_.pop_back();
+        chain_.leave();
         tree_.nodes.push_back(std::move(node));
         known_[key] = uint32_t(tree_.nodes.size() - 1);
         return uint32_t(tree_.nodes.size() - 1);
     }
 
     Status add_own(SceneNode& node) {
-        const bool root = chain_.size() == 1;
+        const bool root = chain_.length() == 1;
         for (const SceneModel& model : node.file.scene.models) {
             auto [found, added] =
                 models_.try_emplace(std::tuple(model.source_path, model.variation, model.importance),
@@ -86,15 +74,9 @@ class TreeReader {
         const std::string& file = node.file.scene.path;
         const std::string place = reference.place + ".scene";
         const std::string key = file_key(reference.path);
-        for (size_t i = 0; i < chain_.size(); ++i) {
-            if (chain_[i].key != key) continue;
-            std::string way;
-            for (size_t k = i; k < chain_.size(); ++k) way += chain_[k].path + " -> ";
-            return fail(ErrorId::value_out_of_range, file, place,
-                        "a scene in itself: " + way + chain_[i].path, "take one of these references out");
-        }
+        COPPICE_CHECK(chain_.check_is_new(reference.path, place));
         if (auto found = known_.find(key); found != known_.end()) return found->second;
-        if (chain_.size() > k_reference_depth_limit) return too_deep(node, reference);
+        COPPICE_CHECK(chain_.check_depth(reference.path, place, 0));
         auto read = read_scene_file(reference.path, settings_, SceneRole::referenced);
         if (!read &&
             (read.error().id == ErrorId::file_missing || read.error().id == ErrorId::file_unreadable))
@@ -107,7 +89,7 @@ class TreeReader {
     Status add_reference(SceneNode& node, const SceneReference& reference, const SceneNode& child) {
         node.depth = std::max(node.depth, child.depth + 1);
         // A file read before, on a shorter way.
-        if (chain_.size() - 1 + node.depth > k_reference_depth_limit) return too_deep(node, reference);
+        COPPICE_CHECK(chain_.check_depth(reference.path, reference.place + ".scene", child.depth));
         if (child.plant_count == 0) return {};
         // Both factors are at most k_plant_limit.
         node.plant_count += reference.copy_count() * child.plant_count;
@@ -140,16 +122,9 @@ class TreeReader {
                     fmt::format("at most {} in a scene", k_plant_limit));
     }
 
-    tl::unexpected<Error> too_deep(const SceneNode& node, const SceneReference& reference) const {
-        return fail(ErrorId::limit_exceeded, node.file.scene.path, reference.place + ".scene",
-                    fmt::format("'{}': more than {} scenes inside each other", reference.path,
-                                k_reference_depth_limit),
-                    "refer to it from a scene nearer to the first");
-    }
-
     const SceneLoadSettings& settings_;
     SceneTree tree_;
-    std::vector<Link> chain_;  // from the root to the file being read
+    FileChain chain_;
     std::map<std::string, uint32_t> known_;
     std::map<std::tuple<std::string, uint64_t, float>, uint32_t> models_;
     uint64_t own_plants_ = 0;

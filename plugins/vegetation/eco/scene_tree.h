@@ -1,11 +1,10 @@
 // A scene's file with all files it refers to, directly or not, each read once, and each model named once.
 #pragma once
 #include <vector>
+#include "plugins/vegetation/eco/file_chain.h"
 #include "plugins/vegetation/eco/scene_file.h"
 
 namespace coppice {
-
-inline constexpr uint32_t k_reference_depth_limit = 16;
 
 struct SceneNode {
     SceneFile file;                                   // references that bring no plant are left out

@@ -30,7 +30,7 @@ TileBlockName TileStreamer::name_of(uint32_t block) const {
 
 uint64_t TileStreamer::bytes_of(uint32_t block) const {
     const TileBlockName name = name_of(block);
-    return block_of(packs_[name.pack].nodes[name.node], name.kind).item_count * bytes_of_item(name.kind);
+    return bytes_of_block(packs_[name.pack].nodes[name.node], name.kind);
 }
 
 // Afterwards the queue is empty, and what no thread has begun was never asked for.
@@ -220,15 +220,15 @@ void TileStreamer::read_blocks(const std::stop_token& stopping) {
         }
         std::list<FinishedTileBlock> finished;
         finished.push_back(read_block(name));
-        const TileBlockPlace& place = block_of(packs_[name.pack].nodes[name.node], name.kind);
+        const PackedTileNode& node = packs_[name.pack].nodes[name.node];
         bool idle;
         {
             std::lock_guard lock(mutex_);
             --reading_;
             ++counters_.blocks_read;
-            counters_.bytes_read += place.stored_bytes;
+            counters_.bytes_read += block_of(node, name.kind).stored_bytes;
             if (finished.front().status)
-                counters_.bytes_unpacked += place.item_count * bytes_of_item(name.kind);
+                counters_.bytes_unpacked += bytes_of_block(node, name.kind);
             else
                 ++counters_.errors;
             finished_.splice(finished_.end(), finished);

@@ -31,11 +31,17 @@ struct TileStreamSettings {
     uint32_t thread_count = 1;
 };
 
+// How much of a world larger than memory is kept at hand.
+struct ResidencySettings {
+    uint64_t host_bytes = uint64_t(256) << 20;  // of plants, and of clouds
+    uint64_t gpu_bytes = uint64_t(256) << 20;   // of clouds
+};
+
 struct FinishedTileBlock {
     TileBlockName block;
-    Status status;                    // after an error the block is not read again, and need not be released
-    std::vector<PackedVertex> cloud;  // of a cloud
-    TilePlants plants;                // of plants
+    Status status;      // after an error the block is not read again, and need not be released
+    TileCloud cloud;    // of a cloud
+    TilePlants plants;  // of plants
 };
 
 struct TileStreamStatistics {

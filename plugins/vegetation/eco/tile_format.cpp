@@ -76,10 +76,21 @@ NodeFault fault_of_nodes(std::span<const PackedTileNode> nodes) {
     return {};
 }
 
-const char* fault_of_points(std::span<const PackedVertex> points) {
+const char* fault_of_contents(const TileCloud& cloud) {
     bool usable = true;
-    for (const PackedVertex& p : points) usable &= is_within_reach(p.x_plant, p.y_plant, p.z_plant);
-    return usable ? nullptr : "a point that is not finite, or out of reach";
+    for (const PackedVertex& p : cloud.points) usable &= is_within_reach(p.x_plant, p.y_plant, p.z_plant);
+    if (!usable) return "a point that is not finite, or out of reach";
+    auto is_measure = [](float v) { return v >= 0.0f && std::isfinite(v); };  // false for NaN
+    float before = 0.0f;
+    for (float density : cloud.densities) {
+        usable &= density >= before && std::isfinite(density);
+        before = density;
+    }
+    if (!usable) return "densities that fall, or are negative or not finite";
+    for (float area_m2 : cloud.exhausted_area_m2) usable &= is_measure(area_m2);
+    if (!usable || !is_measure(cloud.exhausted_density))
+        return "an exhausted area or its density that is negative or not finite";
+    return nullptr;
 }
 
 const char* fault_of_plants(std::span<const PlantPosition> positions, std::span<const PlantTurn> turns,

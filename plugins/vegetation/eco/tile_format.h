@@ -49,7 +49,7 @@ struct NodeFault {
 NodeFault fault_of_nodes(std::span<const PackedTileNode> nodes);
 
 // Null where they can be used.
-const char* fault_of_points(std::span<const PackedVertex> points);
+const char* fault_of_contents(const TileCloud& cloud);
 const char* fault_of_plants(std::span<const PlantPosition> positions, std::span<const PlantTurn> turns,
                             std::span<const PlantModel> models, size_t model_count);
 

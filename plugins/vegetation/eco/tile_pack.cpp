@@ -86,7 +86,7 @@ Status check_places(const TilePack& pack, uint64_t offset_bytes) {
                 return fail(ErrorId::file_corrupt, pack.path, place_of_block(n, kind),
                             "the block does not follow the one before, or lies outside the file", k_remedy);
             const uint64_t most_bytes =
-                place.item_count ? ZSTD_compressBound(place.item_count * bytes_of_item(kind)) : 0;
+                place.item_count ? ZSTD_compressBound(bytes_of_block(kind, place.item_count)) : 0;
             if (place.stored_bytes > most_bytes || (place.stored_bytes == 0) != (place.item_count == 0) ||
                 (place.stored_bytes == 0 && place.checksum != 0))
                 return fail(ErrorId::file_corrupt, pack.path, place_of_block(n, kind),
@@ -113,25 +113,22 @@ Status unpack_block(const TilePack& pack, uint32_t node, TileBlockKind kind,
         return read;
     }
     if (hash_bytes(stored.data(), stored.size()) != place.checksum) return corrupt("its checksum is wrong");
-    const uint64_t size_bytes = place.item_count * bytes_of_item(kind);
+    const uint64_t size_bytes = bytes_of_block(kind, place.item_count);
     if (ZSTD_getFrameContentSize(stored.data(), place.stored_bytes) != size_bytes)
         return corrupt("its size is not that of its contents");
-    std::vector<std::byte> items(columns.size() == 1 ? 0 : size_bytes);
-    const std::span<std::byte> into = columns.size() == 1 ? *columns.begin() : std::span(items);
-    if (ZSTD_decompress(into.data(), into.size(), stored.data(), place.stored_bytes) != size_bytes)
+    std::vector<std::byte> items(size_bytes);
+    if (ZSTD_decompress(items.data(), items.size(), stored.data(), place.stored_bytes) != size_bytes)
         return corrupt("it cannot be decompressed");
-    if (columns.size() > 1) {
-        const std::byte* from = items.data();
-        for (std::span<std::byte> column : columns) {
-            std::memcpy(column.data(), from, column.size());
-            from += column.size();
-        }
+    const std::byte* from = items.data();
+    for (std::span<std::byte> column : columns) {
+        std::memcpy(column.data(), from, column.size());
+        from += column.size();
     }
     return {};
 }
 
-template <class T>
-std::span<std::byte> writable(std::vector<T>& items) {
+template <class Items>
+std::span<std::byte> writable(Items& items) {
     return std::as_writable_bytes(std::span(items));
 }
 
@@ -172,14 +169,24 @@ Result<TilePack> open_tile_pack(const std::string& path) {
     return pack;
 }
 
-Result<std::vector<PackedVertex>> read_cloud(const TilePack& pack, uint32_t node) {
+Result<TileCloud> read_cloud(const TilePack& pack, uint32_t node) {
     assert(node < pack.nodes.size());
-    std::vector<PackedVertex> points(pack.nodes[node].cloud.item_count);
-    COPPICE_CHECK(unpack_block(pack, node, TileBlockKind::cloud, {writable(points)}));
-    if (const char* fault = fault_of_points(points))
+    const PackedTileNode& packed = pack.nodes[node];
+    TileCloud cloud;
+    cloud.part = packed.cloud_part;
+    cloud.points.resize(packed.cloud.item_count);
+    cloud.densities.resize(packed.cloud.item_count);
+    COPPICE_CHECK(
+        unpack_block(pack, node, TileBlockKind::cloud,
+                     {writable(cloud.points), writable(cloud.densities), writable(cloud.exhausted_area_m2),
+                      std::as_writable_bytes(std::span(&cloud.exhausted_density, 1))}));
+    const char* fault = fault_of_contents(cloud);
+    if (!fault && cloud.finest_density() != packed.finest_density)
+        fault = "densities that are not those of its node";
+    if (fault)
         return fail(ErrorId::value_out_of_range, pack.path, place_of_block(node, TileBlockKind::cloud), fault,
                     k_remedy);
-    return points;
+    return cloud;
 }
 
 Result<TilePlants> read_plants(const TilePack& pack, uint32_t node) {

@@ -1,6 +1,6 @@
 // A tile tree as a file larger than memory: the tree is read when it is opened, clouds and plants one block at a time.
-// Little-endian: a head, the models, the nodes (each with a checksum, XXH3-64), then for every node in order its cloud's
-// points and, in a leaf, its plants, each a zstd frame with a checksum of its own. Everything starts at a multiple of 64
+// Little-endian: a head, the models, the nodes (each with a checksum, XXH3-64), then for every node in order its cloud
+// and, in a leaf, its plants, each a zstd frame with a checksum of its own. Everything starts at a multiple of 64
 // bytes, and every byte is covered by a checksum. write_tile_pack.cpp writes, tile_pack.cpp reads, tile_format.h has the head.
 #pragma once
 #include <memory>
@@ -15,7 +15,7 @@
 namespace coppice {
 
 // Of the format, and of what build_tile_tree makes of a scene: packs of another version are made again.
-inline constexpr uint32_t k_tiles_version = 1;
+inline constexpr uint32_t k_tiles_version = 2;
 inline constexpr uint32_t k_tiles_node_limit = 1u << 22;  // of a pack
 inline constexpr uint32_t k_tiles_item_limit = 1u << 20;  // points of a cloud, plants of a leaf
 // Of coordinates from a tile's origin, and of origins; the earth's circumference is 4e7 m.
@@ -38,9 +38,11 @@ struct PackedTileNode {
     uint64_t triangle_count;             // of all plants below, at full detail
     float finest_density;                // the cloud suffices up to (pixels a metre / d')^2
     uint32_t reserved;                   // 0
-    TileBlockPlace cloud;                // PackedVertex, in the order they are drawn
-    TileBlockPlace plants;               // positions, then turns, then models; of a leaf
-    PackedPart cloud_part;               // all zero where the cloud is empty
+    // Points in the order they are drawn, then their densities, then the areas exhausted and the density up to which few
+    // are: all that drawing and merging it takes beside the part.
+    TileBlockPlace cloud;
+    TileBlockPlace plants;  // positions, then turns, then models; of a leaf
+    PackedPart cloud_part;  // all zero where the cloud is empty
 };
 static_assert(sizeof(PackedTileNode) == 384);
 
@@ -73,9 +75,16 @@ enum class TileBlockKind : uint32_t { cloud, plants };
 inline const TileBlockPlace& block_of(const PackedTileNode& node, TileBlockKind kind) {
     return kind == TileBlockKind::cloud ? node.cloud : node.plants;
 }
-inline constexpr uint64_t bytes_of_item(TileBlockKind kind) {
-    return kind == TileBlockKind::cloud ? sizeof(PackedVertex)
-                                        : sizeof(PlantPosition) + sizeof(PlantTurn) + sizeof(PlantModel);
+// Decompressed; 0 where nothing is stored.
+inline constexpr uint64_t bytes_of_block(TileBlockKind kind, uint64_t item_count) {
+    if (kind == TileBlockKind::plants)
+        return item_count * (sizeof(PlantPosition) + sizeof(PlantTurn) + sizeof(PlantModel));
+    return item_count
+               ? item_count * (sizeof(PackedVertex) + sizeof(float)) + (k_density_steps + 1) * sizeof(float)
+               : 0;
+}
+inline uint64_t bytes_of_block(const PackedTileNode& node, TileBlockKind kind) {
+    return bytes_of_block(kind, block_of(node, kind).item_count);
 }
 
 // nodes: of build_tile_tree(scene, plants). Replaces the file completely or leaves the old one as it was. Same input, same
@@ -88,9 +97,10 @@ Status write_tile_pack(const std::string& path, std::span<const TileNode> nodes,
 // tree with sums that are right, finite numbers. Errors: file_*, format_unknown, value_out_of_range, limit_exceeded.
 Result<TilePack> open_tile_pack(const std::string& path);
 
-// From any thread. Positions are finite and within k_tile_reach_m. Nothing is read where nothing is stored.
-// Errors: file_*, value_out_of_range; the place names node and block.
-Result<std::vector<PackedVertex>> read_cloud(const TilePack& pack, uint32_t node);
+// From any thread. Positions are finite and within k_tile_reach_m; densities finite, not negative and ascending, and
+// those the node tells; areas finite and not negative. Nothing is read where nothing is stored, and a cloud without points
+// has no part. Errors: file_*, value_out_of_range; the place names node and block.
+Result<TileCloud> read_cloud(const TilePack& pack, uint32_t node);
 // Scales are in (0, 1e5], turns of about unit length, models known.
 Result<TilePlants> read_plants(const TilePack& pack, uint32_t node);
 // Reads every block, for who keeps a pack instead of making it again. The first error in the file's order.

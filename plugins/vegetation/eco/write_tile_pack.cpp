@@ -53,12 +53,15 @@ void pack_cloud(const TileCloud& cloud, PackedTileNode& packed, NodeBlocks& bloc
     packed.cloud.item_count = uint32_t(cloud.points.size());
     packed.cloud_part = cloud.part;
     packed.finest_density = cloud.finest_density();
-    if (const char* fault = fault_of_points(cloud.points)) {
+    if (const char* fault = fault_of_contents(cloud)) {
         blocks.fault = fault;
         return;
     }
     Bytes items;
     append<PackedVertex>(items, cloud.points);
+    append<float>(items, cloud.densities);
+    append<float>(items, cloud.exhausted_area_m2);
+    append(items, std::span(&cloud.exhausted_density, 1));
     blocks.cloud = compress(items, packed.cloud);
 }
 

@@ -43,6 +43,9 @@ struct FrameSettings {
     // While camera, light, scene and settings rest, frames are averaged, up to this many, each sampled at another place
     // of the pixel; then nothing is drawn until something moves. 0: every frame stands alone.
     uint32_t accumulate_limit = 0;
+    // Of a world that is read while it is flown over: the frame waits until all it needs, and its memory has room for, is
+    // there. For pictures that must not depend on timing; else what is above stands in for what is missing.
+    bool wait_for_tiles = false;
     bool operator==(const FrameSettings&) const = default;
 };
 

@@ -9,9 +9,11 @@ struct FrameReport {
     uint32_t tiles_touched = 0;   // looked at on the way down
     uint32_t tiles_expanded = 0;  // whose plants were looked at
     uint32_t clouds = 0;          // tiles that one cloud of points stood for
+    uint32_t tiles_missing = 0;   // clouds that stood for what was not in memory yet
     uint32_t tiles_hidden = 0;    // in view, but behind the ground; with all below them
-    uint32_t plants = 0, plants_visible = 0;
-    uint32_t plants_expanded = 0;  // of the tiles that were looked into
+    uint64_t plants = 0;
+    uint32_t plants_visible = 0;
+    uint32_t plants_expanded = 0;                   // of the tiles that were looked into
     uint32_t plants_hidden = 0;                     // of expanded tiles, in view but behind the ground
     float sample_distance_px = 0.0f;                // d' as drawn
     uint64_t vertex_budget = 0;                     // that d' was found for; 0: none
@@ -26,8 +28,13 @@ struct FrameReport {
     uint64_t dropped_triangles =
         0;                       // large ones beyond the list's capacity in the last finished frame; it grows
     uint32_t rested_frames = 0;  // the picture is the mean of so many frames before this one, and this one
-    double cull_ms = 0.0, lod_ms = 0.0, write_ms = 0.0;  // CPU: tiles, levels, work list
-    uint64_t gpu_bytes = 0;                              // buffers held
+    double stream_ms = 0.0, cull_ms = 0.0, lod_ms = 0.0, write_ms = 0.0;  // CPU
+    uint64_t gpu_bytes = 0;                                               // buffers held
+    // Of a world that is read while it is flown over.
+    uint32_t streamed_clouds = 0, streamed_plant_tiles = 0;  // in memory
+    uint64_t stream_bytes_read = 0;                          // since the start, as stored
+    uint64_t stream_resident_bytes = 0;                      // of its budget
+    uint32_t stream_errors = 0;                              // blocks that could not be read, since the start
 };
 
 }  // namespace coppice

@@ -1,8 +1,10 @@
 // READ FIRST. Registers the components, systems and passes, in order of execution:
 //
 //   stream  stream_tiles    draw/     what was read of a world larger than memory is put where it is drawn from
-//   cull    list_tiles      cull/     tiles in view, nearest first, down to those whose clouds suffice; what is missing
-//   lod     expand_plants   lod/      which primitives of each plant's parts and of clouds; draw/ writes them down, in parallel
+//   cull    list_tiles      cull/     tiles in view, nearest first, down to those whose clouds suffice, and what is missing;
+//                                     draw/ sees their plants
+//   lod     expand_plants   lod/      the budget's d'; which primitives of each plant's parts and of clouds; draw/ writes
+//                                     them down, in parallel
 //   draw    write_work_list draw/     the jobs' lists, one behind the other, into the mapped buffers
 //   report  count           report/   what was drawn
 //   passes  clear, triangles, big triangles, lines, points ..., resolve: draw/rasteriser.cpp
@@ -294,7 +296,7 @@ class VegetationSystems final : public Vegetation {
     void wait_for_tiles(World& world) {
         drawn_ = frame_;
         for (int round = 0; round < k_most_rounds; ++round) {
-            list(TileList::Tiles(world), TileList::Plants(world));
+            list(TileList::Tiles(world), TileList::Plants(world), drawn_.sample_distance_px);
             residency_->wish(tile_list_.wishes());
             residency_->wait();
             if (!residency_->update(world, chunks_.front(), geometry_, *rasteriser_, slot_, true)) return;
@@ -306,31 +308,35 @@ class VegetationSystems final : public Vegetation {
         double begin = now_ms();
         begin_frame();
         if (settled_) return;
-        list(tiles, plants);
+        list(tiles, plants, drawn_.sample_distance_px);
         report_.cull_ms = now_ms() - begin;
     }
 
-    // As d' asks for.
-    void list(const TileList::Tiles& tiles, const TileList::Plants& plants) {
-        constexpr float k_slack = 1.0f + 2.0f * k_settled_sample_distance;  // d' may still change by so much
-        listed_px_ = drawn_.sample_distance_px;
+    // For d' and what is a little coarser.
+    void list(const TileList::Tiles& tiles, const TileList::Plants& plants, float sample_distance_px) {
+        listed_px_ = sample_distance_px;
+        FrameSettings coarsest = drawn_;
+        coarsest.sample_distance_px *= k_list_reach;
+        coarsest.line_sample_distance_px *= k_list_reach;
+        spread_for_px_ = coarsest.sample_distance_px;
         const Horizon* horizon = horizon_.empty() ? nullptr : &horizon_;
         const float spread_px =
-            k_slack * widest_spread_px(geometry_.least_importance, geometry_.most_line_width, drawn_);
-        tile_list_.list(
-            tiles, plants, frustum_, camera_.position_world,
-            {drawn_.level_of_detail ? drawn_.sample_distance_px : 0.0f, motion_m_, horizon, spread_px});
+            widest_spread_px(geometry_.least_importance, geometry_.most_line_width, coarsest);
+        tile_list_.list(tiles, plants, frustum_, camera_.position_world,
+                        {drawn_.level_of_detail ? sample_distance_px : 0.0f, motion_m_, horizon, spread_px});
         frame_plants_.see(tile_list_, geometry_, frustum_, drawn_, horizon, spread_px);
     }
 
-    // Which tiles are clouds, what they hide and what plants' gains are depends on d' itself, so it is looked for until
-    // it is what it was found with.
+    // Which tiles are clouds and what plants' gains are depends on d' itself, so it is looked for until it is what it was
+    // found with. Where a tile hands over, the count jumps, and there may be no such d': after a second try tiles are only
+    // listed for finer ones, since plants can be drawn as coarsely as their cloud, but no cloud finer than it is.
     float solve(const TileList::Tiles& tiles, const TileList::Plants& plants) {
+        int passes = 0;
         double vertices = 0.0;
         auto settle = [&] {
             drawn_.sample_distance_px = settle_sample_distance(drawn_.sample_distance_px, [&](float at_px) {
                 drawn_.sample_distance_px = at_px;
-                if (listed_px_ != at_px) list(tiles, plants);
+                if (at_px < listed_px_ || (++passes <= 2 && at_px > listed_px_)) list(tiles, plants, at_px);
                 const BudgetHistogram& measured =
                     frame_plants_.measure(tile_list_, geometry_, frustum_, drawn_);
                 const float found_px = solve_sample_distance(measured, 0, budget_, frame_.sample_distance_px,
@@ -341,13 +347,14 @@ class VegetationSystems final : public Vegetation {
         };
         settle();
         const float solved_px = drawn_.sample_distance_px;
-        constexpr double k_tolerance = 0.006;  // of the budget; solve_sample_distance's and rounding
+        constexpr double k_tolerance = 0.006;  // of the budget: solve_sample_distance's and rounding
         if (vertices < (1.0 - k_tolerance) * double(budget_) && solved_px > frame_.sample_distance_px) {
             drawn_.line_sample_distance_px = solved_px;
             settle();
         }
-        if (std::fabs(drawn_.sample_distance_px - listed_px_) > k_settled_sample_distance * listed_px_)
-            list(tiles, plants);
+        // What is hidden was found for splats of a size.
+        if (drawn_.sample_distance_px > spread_for_px_ || drawn_.line_sample_distance_px > spread_for_px_)
+            list(tiles, plants, listed_px_);
         return solved_px;
     }
 
@@ -398,6 +405,9 @@ class VegetationSystems final : public Vegetation {
         report_.plants = tile_list_.plant_count;
         report_.tiles_hidden = tile_list_.hidden_tile_count;
         report_.cloud_plants = 0;
+        report_.plants_expanded = 0;
+        for (const PlantRun& run : tile_list_.runs())
+            report_.plants_expanded += uint32_t(run.positions.size());
         frame_plants_.count(report_.plants_visible, report_.plants_hidden, report_.full_triangles);
         for (const CloudTile& tile : tile_list_.clouds()) {
             report_.cloud_plants += tile.plant_count;
@@ -461,7 +471,9 @@ class VegetationSystems final : public Vegetation {
     GroundList ground_list_;
     GroundExpander ground_expander_;
     FramePlants frame_plants_;
-    float listed_px_ = 0.0f;       // d' that the tiles were listed for
+    static constexpr float k_list_reach = 1.25f;
+    float listed_px_ = 0.0f,
+          spread_for_px_ = 0.0f;   // d' that the tiles were listed for, and the largest for what is hidden
     uint64_t budget_ = 0;          // vertices; 0: none
     float last_solved_px_ = 1.0f;  // d' of the last frame in which the view moved
     LearnedCost cost_;

@@ -133,6 +133,7 @@ TEST(Content, StandsHaveTheirTrees) {
     EXPECT_EQ(load_content("stand_640").positions.size(), 640u);
     EXPECT_EQ(load_content("stand_5000").positions.size(), 5000u);
     EXPECT_EQ(load_content("stand_50000").positions.size(), 50000u);
+    EXPECT_EQ(load_content("thicket_100000").positions.size(), 100000u);
 }
 
 TEST(Content, WoodlandIsMixed) {

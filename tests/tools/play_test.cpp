@@ -133,6 +133,19 @@ TEST(Play, LeavesPicturesTablesAndAPage) {
     EXPECT_EQ(page.find("src=\"http"), std::string::npos) << "the page needs nothing from elsewhere";
 }
 
+TEST(Play, DrawsAsManyVerticesAsItMay) {
+    const std::string folder = fresh_folder(), scene = write_scene(folder);
+    ASSERT_EQ(run_coppice(play(scene, folder + "/a")).exit_code, 0);
+    const json free = json::parse(read_file(folder + "/a/summary.json"));
+    const std::string half = std::to_string(uint64_t(figure(free, "vertices") / 2.0));
+    ASSERT_EQ(run_coppice(play(scene, folder + "/b", {"--vertices", half})).exit_code, 0);
+    const json held = json::parse(read_file(folder + "/b/summary.json"));
+    EXPECT_GT(figure(held, "sample_distance_px"), figure(free, "sample_distance_px"));
+    // Nine plants round to whole points.
+    EXPECT_NEAR(figure(held, "vertices"), std::stod(half), 0.1 * std::stod(half));
+    EXPECT_EQ(held.at("settings").at("vertex_budget"), std::stoull(half));
+}
+
 TEST(Play, DrawsTheSamePicturesEveryTime) {
     const std::string folder = fresh_folder(), scene = write_scene(folder);
     ASSERT_EQ(run_coppice(play(scene, folder + "/a")).exit_code, 0);

@@ -8,6 +8,7 @@
 #include "tools/coppice/play_host.h"
 #include "tools/coppice/play_loop.h"
 #include "tools/coppice/play_report.h"
+#include "tools/coppice/statistics.h"
 
 namespace coppice {
 namespace {
@@ -64,6 +65,41 @@ Result<nlohmann::json> bench_pines(const BenchSettings& settings) {
                     {"psnr_to_full_db", value("psnr_to_full_db"), "dB", {}},
                     {"vertices", value("vertices"), "per frame", {}},
                     {"scene_triangles", value("scene_triangles"), "", {}}});
+}
+
+Result<nlohmann::json> bench_frame(const BenchSettings& settings) {
+    std::vector<Figure> figures;
+    PlayRecord record;
+    PlayOptions options;
+    options.width = 795;
+    options.height = 700;
+    options.sample_distance_px = 1.0f;
+    for (const char* way : {"d' as set", "budget"}) {
+        COPPICE_TRY(record, fly_scene(settings, "thicket_100000", options));
+        std::vector<double> cull_ms, lod_ms, write_ms, all_ms, expanded, visible, vertices;
+        for (const FrameRecord& frame : record.frames) {
+            const FrameReport& report = frame.report;
+            cull_ms.push_back(report.cull_ms);
+            lod_ms.push_back(report.lod_ms);
+            write_ms.push_back(report.write_ms);
+            all_ms.push_back(report.cull_ms + report.lod_ms + report.write_ms);
+            expanded.push_back(report.plants_expanded);
+            visible.push_back(report.plants_visible);
+            vertices.push_back(double(report.vertices));
+        }
+        const std::string prefix = fmt::format("{}: ", way);
+        figures.push_back({prefix + "cull, lod, write", median(all_ms), "ms", 1.0, Reach::at_most});
+        figures.push_back({prefix + "cull: tiles, plants in view", median(cull_ms), "ms", {}});
+        figures.push_back({prefix + "lod: levels, budget", median(lod_ms), "ms", {}});
+        figures.push_back({prefix + "write: work list", median(write_ms), "ms", {}});
+        figures.push_back({prefix + "plants in expanded tiles", median(expanded), "per frame", {}});
+        figures.push_back({prefix + "plants in view", median(visible), "per frame", {}});
+        figures.push_back({prefix + "vertices", median(vertices), "per frame", {}});
+        // d' comes out as it was set, but has to be found.
+        options.settings.vertex_budget = uint64_t(median(vertices));
+        options.sample_distance_px = 0.5f;
+    }
+    return to_json("frame", record, figures);
 }
 
 Result<nlohmann::json> bench_table(const BenchSettings& settings) {

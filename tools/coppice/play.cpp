@@ -114,7 +114,8 @@ void add_play(CLI::App& app, Command& chosen) {
                      "d' in pixels; smaller draws more. Default: what the scene recommends")
         ->check(CLI::Range(0.01, 1000.0));
     play->add_option("--vertices", options.settings.vertex_budget,
-                     "Points + 2 lines + 3 triangles of plants a frame may draw: d' grows as far as that takes. 0: any "
+                     "Points + 2 lines + 3 triangles of plants a frame may draw: d' grows as far as that "
+                     "takes. 0: any "
                      "number")
         ->capture_default_str();
     play->add_option("--frame-ms", options.settings.time_budget_ms,

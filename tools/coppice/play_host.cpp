@@ -214,12 +214,10 @@ Result<std::unique_ptr<PlayHost>> PlayHost::create(const PlayOptions& options,
 
 Result<PlayHost::Frame> PlayHost::begin_frame(const Camera& camera, const FrameSettings& settings) {
     COPPICE_TRY(const gpu::CommandRing::Frame frame, ring.begin());
-    const std::span<const gpu::Timestamps::Section> sections = frame.timestamps->sections();
-    if (read_times) read_times(frame.slot, sections);
+    if (read_times) read_times(frame.slot, frame.timestamps->sections());
     // Nothing overlapped; draw_frame knows better.
-    double last_ms = schedule_ms_of_slot_[frame.slot];
-    for (const gpu::Timestamps::Section& section : sections) last_ms += section.ms;
-    if (!sections.empty()) vegetation->set_frame_ms(frame.slot, last_ms);
+    if (const double device_ms = frame.timestamps->total_ms(); device_ms > 0.0)
+        vegetation->set_frame_ms(frame.slot, device_ms + schedule_ms_of_slot_[frame.slot]);
     vegetation->set_slot(frame.slot);
     vegetation->set_camera(camera);
     vegetation->set_settings(settings);

@@ -260,7 +260,8 @@ bool Horizon::hidden(const Box& bounds_camera, float spread_px) const {
 }
 
 bool Horizon::hides_some(const Box& bounds_camera) const {
-    if (ring_count_ == 0 || bounds_camera.empty() || !is_finite(bounds_camera.min) || !is_finite(bounds_camera.max))
+    if (ring_count_ == 0 || bounds_camera.empty() || !is_finite(bounds_camera.min) ||
+        !is_finite(bounds_camera.max))
         return false;
     for (uint32_t face = 0; face < 4; ++face) {
         Span span;

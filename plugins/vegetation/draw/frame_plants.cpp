@@ -10,11 +10,11 @@ void FramePlants::see(const TileList& tiles, const SceneGeometry& geometry, cons
                       const FrameSettings& settings, const Horizon* horizon, float spread_px) {
     const std::span<const PlantRun> runs = tiles.runs();
     run_count_ = runs.size();
-    if (seen_.size() < run_count_) seen_.resize(run_count_);
+    while (seen_.size() < run_count_) seen_.emplace_back().plants.reserve(k_plants_a_run);
     parallel_for(run_count_, 1, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; ++i)
-            see_plants(runs[i], geometry, frustum, settings, runs[i].may_be_hidden ? horizon : nullptr, spread_px,
-                       seen_[i]);
+            see_plants(runs[i], geometry, frustum, settings, runs[i].may_be_hidden ? horizon : nullptr,
+                       spread_px, seen_[i]);
     });
 }
 

@@ -11,8 +11,8 @@ class FramePlants {
              const FrameSettings& settings, const Horizon* horizon, float spread_px);
 
     // What draw will draw, by d', gains and cells taken at the settings' d'. Holds until the next call.
-    const BudgetHistogram& measure(const TileList& tiles, const SceneGeometry& geometry, const Frustum& frustum,
-                                   const FrameSettings& settings);
+    const BudgetHistogram& measure(const TileList& tiles, const SceneGeometry& geometry,
+                                   const Frustum& frustum, const FrameSettings& settings);
 
     // Run i into part first_part + i of the work list, clouds into the one behind.
     void draw(const TileList& tiles, const SceneGeometry& geometry, const Frustum& frustum,
@@ -24,7 +24,8 @@ class FramePlants {
   private:
     std::vector<SeenPlants> seen_;  // of each run; kept, as all here, so that a warm frame allocates nothing
     size_t run_count_ = 0;
-    std::vector<BudgetHistogram> measured_;  // one a job, since they are large; sums do not depend on who adds
+    std::vector<BudgetHistogram>
+        measured_;  // one a job, since they are large; sums do not depend on who adds
 };
 
 }  // namespace coppice

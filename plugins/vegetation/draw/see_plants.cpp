@@ -13,8 +13,8 @@ float share_of_own_place(const DrawModel& model, float distance_m, float scale) 
                            : 0.0f;
 }
 
-PlantView view_of(const Frustum& frustum, const mat3& rotation, vec3 center, float radius_m, float scale) {
-    const float distance_m = glm::length(center);
+inline PlantView view_of(const Frustum& frustum, const mat3& rotation, vec3 center, float distance_m,
+                         float radius_m, float scale) {
     return {distance_m > 0.0f ? (center * (1.0f / distance_m)) * rotation : vec3(0.0f, 0.0f, -1.0f),
             pixels_per_meter(frustum.focal_px, distance_m, radius_m, frustum.near_m, scale) *
                 off_axis_stretch(frustum, center, distance_m)};
@@ -88,8 +88,9 @@ void see_plants(const PlantRun& run, const SceneGeometry& geometry, const Frustu
         }
         seen.full_triangles += model.triangle_count;
 
-        const PlantView plant_view = view_of(frustum, rotation, center, radius_m, place.scale);
-        const float own_place = share_of_own_place(model, glm::length(center), place.scale);
+        const float distance_m = glm::length(center);
+        const PlantView plant_view = view_of(frustum, rotation, center, distance_m, radius_m, place.scale);
+        const float own_place = share_of_own_place(model, distance_m, place.scale);
         for (uint32_t part = model.first_part; part < model.first_part + model.part_count; ++part) {
             const PartCells cells = geometry.part_cells[part];
             if (cells.count == 0 || own_place == 0.0f) {
@@ -101,8 +102,8 @@ void see_plants(const PlantRun& run, const SceneGeometry& geometry, const Frustu
                 const vec3 at = position + rotation * (sphere.center_plant * place.scale);
                 const float cell_radius_m = sphere.radius_m * place.scale;
                 if (!run.inside && !sees_sphere(frustum, at, cell_radius_m)) continue;
-                add(cell, view_of(frustum, rotation, center + (at - center) * own_place, cell_radius_m,
-                                  place.scale));
+                const vec3 from = center + (at - center) * own_place;
+                add(cell, view_of(frustum, rotation, from, glm::length(from), cell_radius_m, place.scale));
             }
         }
         seen.plants.push_back({instance_of(rotation, place.scale, position), plant_view, model.first_part,

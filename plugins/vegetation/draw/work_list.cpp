@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include "runtime/core/jobs.h"
 
 namespace coppice {
 namespace {
+
+constexpr size_t k_parts_a_job = 16;
 
 size_t lane_bucket(uint32_t count) { return count <= 4 ? 0 : count <= 8 ? 1 : count <= 16 ? 2 : 3; }
 
@@ -23,9 +26,9 @@ WorkInstance instance_of(const mat3& rotation, float scale, vec3 position_camera
 void WorkPart::clear() {
     triangles = lines = points = 0;
     instances_.clear();
-    for (auto& list : groups_) list.clear();
-    for (auto& buckets : lanes_)
-        for (auto& list : buckets) list.clear();
+    entries_.clear();
+    bins_.clear();
+    counts_ = {};
 }
 
 uint32_t WorkPart::add_instance(const WorkInstance& instance) {
@@ -33,20 +36,32 @@ uint32_t WorkPart::add_instance(const WorkInstance& instance) {
     return uint32_t(instances_.size() - 1);
 }
 
+void WorkPart::push(size_t bin, const WorkEntry& entry) {
+    entries_.push_back(entry);
+    bins_.push_back(uint8_t(bin));
+    ++counts_[bin];
+}
+
 void WorkPart::add_run(WorkKind kind, WorkEntry entry, uint32_t vertices_a_primitive) {
     if (entry.count == 0) return;
-    if (entry.count <= k_primitives_a_lane) {
-        lanes_[size_t(kind)][lane_bucket(entry.count)].push_back(entry);
-        return;
-    }
+    const size_t groups = size_t(kind) * k_bins_of_kind;
+    if (entry.count <= k_primitives_a_lane) return push(groups + 1 + lane_bucket(entry.count), entry);
     uint32_t left = entry.count;
     while (left > 0) {
         entry.count = std::min(left, k_primitives_a_group);
-        groups_[size_t(kind)].push_back(entry);
+        push(groups, entry);
         entry.first_vertex += entry.count * vertices_a_primitive;
         entry.first_owner += entry.count;
         left -= entry.count;
     }
+}
+
+WorkPart::BinCounts WorkPart::count_with(uint32_t instance_count) const {
+    if (instance_count >= instances_.size()) return counts_;
+    BinCounts counts{};
+    for (size_t e = 0; e < entries_.size(); ++e)
+        counts[bins_[e]] += (entries_[e].instance & ~k_ground_bit) < instance_count;
+    return counts;
 }
 
 void WorkPart::add_triangles(uint32_t first_vertex, uint32_t count, uint32_t instance, bool cull_back) {
@@ -57,52 +72,43 @@ void WorkPart::add_ground(uint32_t first_vertex, uint32_t triangle_count, uint32
     add_triangles(first_vertex, triangle_count, instance | k_ground_bit, false);
 }
 
+void WorkPart::add_from(WorkKind kind, WorkEntry entry, uint32_t vertices_a_primitive, float start,
+                        uint32_t stored, uint32_t count, bool has_owners) {
+    const uint32_t first = std::min(uint32_t(start * float(stored)), stored);
+    const uint32_t from_start = std::min(count, stored - first);
+    // What is left for the list's beginning, and the run from `start` on.
+    entry.count = count - from_start;
+    add_run(kind, entry, vertices_a_primitive);
+    entry.first_vertex += vertices_a_primitive * first;
+    if (has_owners) entry.first_owner += first;
+    entry.count = from_start;
+    add_run(kind, entry, vertices_a_primitive);
+}
+
 void WorkPart::add(const PartGeometry& geometry, const PartChoice& choice, uint32_t instance, float start) {
-    add_triangles(geometry.first_triangle_vertex, choice.triangles, instance, geometry.cull_back);
-    // The part of a run of `count` from `start` on, and what is left for the list's beginning.
-    auto cut = [start](uint32_t count, uint32_t stored) {
-        uint32_t first = std::min(uint32_t(start * float(stored)), stored);
-        return std::pair(first, std::min(count, stored - first));
-    };
-    auto [first_line, lines_from_start] = cut(choice.lines, geometry.line_count);
-    WorkEntry line{geometry.first_line_vertex,
-                   0,
-                   instance,
-                   0,
-                   choice.line_width_px,
-                   std::bit_cast<uint32_t>(choice.turned_share),
-                   0,
-                   0.0f};
-    line.count = choice.lines - lines_from_start;
-    add_run(WorkKind::lines, line, 2);
-    line.first_vertex += 2 * first_line;
-    line.count = lines_from_start;
-    add_run(WorkKind::lines, line, 2);
-    // A side a rounding error over a whole pixel must not cost four times the pixels.
-    constexpr float k_slack = 1.0e-3f;
-    float side = choice.splat_px;
-    WorkKind kind = choice.point_owner_min > 0 || choice.density_limit_m2 > 0.0f ? WorkKind::points_blend
-                    : side <= 1.0f + k_slack                                     ? WorkKind::points_1
-                    : side <= 2.0f + k_slack                                     ? WorkKind::points_2
-                                                                                 : WorkKind::points_any;
-    auto [first_point, points_from_start] = cut(choice.points, geometry.point_count);
-    WorkEntry point{geometry.first_point,
-                    0,
-                    instance,
-                    geometry.first_owner,
-                    side,
-                    choice.point_owner_min,
-                    std::bit_cast<uint32_t>(choice.density_limit_m2),
-                    choice.mean_facing};
-    point.count = choice.points - points_from_start;
-    add_run(kind, point, 1);
-    point.first_vertex += first_point;
-    point.first_owner += first_point;
-    point.count = points_from_start;
-    add_run(kind, point, 1);
     triangles += choice.triangles;
     lines += choice.lines;
     points += choice.points - choice.skipped_points;
+    if (choice.triangles > 0)
+        add_triangles(geometry.first_triangle_vertex, choice.triangles, instance, geometry.cull_back);
+    if (choice.lines > 0)
+        add_from(WorkKind::lines,
+                 {geometry.first_line_vertex, 0, instance, 0, choice.line_width_px,
+                  std::bit_cast<uint32_t>(choice.turned_share), 0, 0.0f},
+                 2, start, geometry.line_count, choice.lines, false);
+    if (choice.points == 0) return;
+    // A side a rounding error over a whole pixel must not cost four times the pixels.
+    constexpr float k_slack = 1.0e-3f;
+    const float side = choice.splat_px;
+    const WorkKind kind = choice.point_owner_min > 0 || choice.density_limit_m2 > 0.0f
+                              ? WorkKind::points_blend
+                          : side <= 1.0f + k_slack ? WorkKind::points_1
+                          : side <= 2.0f + k_slack ? WorkKind::points_2
+                                                   : WorkKind::points_any;
+    add_from(kind,
+             {geometry.first_point, 0, instance, geometry.first_owner, side, choice.point_owner_min,
+              std::bit_cast<uint32_t>(choice.density_limit_m2), choice.mean_facing},
+             1, start, geometry.point_count, choice.points, true);
 }
 
 void WorkList::begin(size_t part_count) {
@@ -115,46 +121,56 @@ WorkList::Size WorkList::size() const {
     Size size;
     for (size_t i = 0; i < part_count_; ++i) {
         size.instances += uint32_t(parts_[i].instances_.size());
-        for (const auto& list : parts_[i].groups_) size.entries += uint32_t(list.size());
-        for (const auto& buckets : parts_[i].lanes_)
-            for (const auto& list : buckets) size.entries += uint32_t(list.size());
+        size.entries += uint32_t(parts_[i].entries_.size());
     }
     return size;
 }
 
 WorkList::Layout WorkList::gather(std::span<WorkInstance> instances, std::span<WorkEntry> entries) {
     Layout layout;
-    first_instance_.resize(part_count_);
-    uint32_t wanted_instances = 0;
+    if (places_.size() < part_count_) places_.resize(part_count_);
     for (size_t i = 0; i < part_count_; ++i) {
-        const auto& list = parts_[i].instances_;
-        first_instance_[i] = wanted_instances;
-        size_t room = instances.size() - layout.instance_count;
-        size_t taken = std::min(room, list.size());
-        if (taken) std::memcpy(&instances[layout.instance_count], list.data(), taken * sizeof(WorkInstance));
-        layout.instance_count += uint32_t(taken);
-        wanted_instances += uint32_t(list.size());
+        const size_t room = instances.size() - layout.instance_count;
+        Place& place = places_[i];
+        place.first_instance = layout.instance_count;
+        place.instance_count = uint32_t(std::min(room, parts_[i].instances_.size()));
+        place.next = parts_[i].count_with(place.instance_count);
+        layout.instance_count += place.instance_count;
     }
-    auto append = [&](const std::vector<WorkEntry>& list, size_t part) {
-        for (WorkEntry entry : list) {
-            entry.instance += first_instance_[part];
-            if (layout.entry_count >= entries.size() ||
-                (entry.instance & ~k_ground_bit) >= layout.instance_count) {
-                ++layout.dropped_entries;
-                continue;
-            }
-            entries[layout.entry_count++] = entry;
+    const uint32_t capacity = uint32_t(std::min<size_t>(entries.size(), UINT32_MAX));
+    uint32_t next = 0;
+    for (size_t bin = 0; bin < WorkPart::k_bins; ++bin) {
+        const uint32_t first = std::min(next, capacity);
+        for (size_t i = 0; i < part_count_; ++i) {
+            const uint32_t count = places_[i].next[bin];
+            places_[i].next[bin] = next;
+            next += count;
         }
-    };
-    for (size_t kind = 0; kind < k_work_kinds; ++kind) {
-        layout.groups[kind].first_entry = layout.entry_count;
-        for (size_t i = 0; i < part_count_; ++i) append(parts_[i].groups_[kind], i);
-        layout.groups[kind].entry_count = layout.entry_count - layout.groups[kind].first_entry;
-        layout.lanes[kind].first_entry = layout.entry_count;
-        for (size_t bucket = 0; bucket < k_lane_buckets; ++bucket)
-            for (size_t i = 0; i < part_count_; ++i) append(parts_[i].lanes_[kind][bucket], i);
-        layout.lanes[kind].entry_count = layout.entry_count - layout.lanes[kind].first_entry;
+        const size_t kind = bin / WorkPart::k_bins_of_kind, bucket = bin % WorkPart::k_bins_of_kind;
+        WorkRange& range = bucket == 0 ? layout.groups[kind] : layout.lanes[kind];
+        if (bucket <= 1) range.first_entry = first;
+        range.entry_count += std::min(next, capacity) - first;
     }
+    layout.entry_count = std::min(next, capacity);
+    layout.dropped_entries = size().entries - layout.entry_count;
+
+    parallel_for(part_count_, k_parts_a_job, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; ++i) {
+            const WorkPart& part = parts_[i];
+            Place& place = places_[i];
+            if (place.instance_count > 0)
+                std::memcpy(&instances[place.first_instance], part.instances_.data(),
+                            place.instance_count * sizeof(WorkInstance));
+            for (size_t e = 0; e < part.entries_.size(); ++e) {
+                WorkEntry entry = part.entries_[e];
+                if ((entry.instance & ~k_ground_bit) >= place.instance_count) continue;
+                const uint32_t at = place.next[part.bins_[e]]++;
+                if (at >= capacity) continue;
+                entry.instance += place.first_instance;
+                entries[at] = entry;
+            }
+        }
+    });
     return layout;
 }
 

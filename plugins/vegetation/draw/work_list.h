@@ -50,7 +50,8 @@ struct PartGeometry {
     uint32_t point_count, line_count;  // stored
 };
 
-// What one job adds. Kept from frame to frame, so that a warm frame allocates nothing.
+// What one job adds. Kept from frame to frame, so that a warm frame allocates nothing. Entries stand as they came; gather
+// sorts them by the dispatch they belong to.
 class WorkPart {
   public:
     void clear();
@@ -66,9 +67,21 @@ class WorkPart {
     friend class WorkList;
     void add_triangles(uint32_t first_vertex, uint32_t count, uint32_t instance, bool cull_back);
     void add_run(WorkKind kind, WorkEntry entry, uint32_t vertices_a_primitive);
+    void add_from(WorkKind kind, WorkEntry entry, uint32_t vertices_a_primitive, float start, uint32_t stored,
+                  uint32_t count, bool has_owners);
+    void push(size_t bin, const WorkEntry& entry);
+
+    // Of each kind first the groups, then the lanes' buckets: the order of a layout.
+    static constexpr size_t k_bins_of_kind = 1 + k_lane_buckets;
+    static constexpr size_t k_bins = k_work_kinds * k_bins_of_kind;
+    using BinCounts = std::array<uint32_t, k_bins>;
+    // Entries whose instance is among the first instance_count.
+    BinCounts count_with(uint32_t instance_count) const;
+
     std::vector<WorkInstance> instances_;
-    std::array<std::vector<WorkEntry>, k_work_kinds> groups_;
-    std::array<std::array<std::vector<WorkEntry>, k_lane_buckets>, k_work_kinds> lanes_;
+    std::vector<WorkEntry> entries_;
+    std::vector<uint8_t> bins_;  // of each entry
+    BinCounts counts_{};
 };
 
 // Where one dispatch finds its entries.
@@ -93,13 +106,18 @@ class WorkList {
         uint32_t instance_count = 0, entry_count = 0;
         uint32_t dropped_entries = 0;  // beyond the capacity of the buffers
     };
-    // Copies all parts; entries and instances that do not fit are dropped and counted.
+    // Copies all parts, in parallel; entries and instances that do not fit are dropped and counted.
     Layout gather(std::span<WorkInstance> instances, std::span<WorkEntry> entries);
 
   private:
+    // A part's share of the layout.
+    struct Place {
+        uint32_t first_instance, instance_count;
+        WorkPart::BinCounts next;  // where its next entry of each bin goes
+    };
     std::vector<WorkPart> parts_;
     size_t part_count_ = 0;
-    std::vector<uint32_t> first_instance_;
+    std::vector<Place> places_;
 };
 
 }  // namespace coppice

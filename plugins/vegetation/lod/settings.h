@@ -28,13 +28,14 @@ struct FrameSettings {
     uint64_t vertex_budget = 0;
     // Likewise, in time: as many vertices as were learned to take that long. 0: none; of both budgets the smaller holds.
     float time_budget_ms = 0.0f;
-    float most_sample_distance_px = 16.0f;  // budgets make d' no larger; the picture's quality goes before them
-    float splat_factor = 1.0f;        // c_p; the paper says 1.2 to 1.5 (docs/decisions.md)
+    float most_sample_distance_px =
+        16.0f;                  // budgets make d' no larger; the picture's quality goes before them
+    float splat_factor = 1.0f;  // c_p; the paper says 1.2 to 1.5 (docs/decisions.md)
     ProjectionMode projection = ProjectionMode::measured;
     bool weigh_by_facing = true;  // splats by |n . v|, as leaves are seen; false: all alike, as printed
     bool level_of_detail = true;  // false: every triangle of everything in view
     bool blend = true;            // false: switch from points to triangles at once
-    bool occlusion = true;        // false: what is behind the ground is drawn as well; the picture is the same
+    bool occlusion = true;  // false: what is behind the ground is drawn as well; the picture is the same
     RepresentationView view = RepresentationView::lit;
     // Each pixel shows its sample and its neighbours' under a tent of this radius, [1, 2] px; 1: its own alone. Leaves
     // are finer than pixels, and a sample of one point a pixel is far from the pixel's mean.

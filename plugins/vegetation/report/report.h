@@ -13,9 +13,10 @@ struct FrameReport {
     uint32_t tiles_hidden = 0;    // in view, but behind the ground; with all below them
     uint64_t plants = 0;
     uint32_t plants_visible = 0;
-    uint32_t plants_hidden = 0;       // of expanded tiles, in view but behind the ground
-    float sample_distance_px = 0.0f;  // d' as drawn
-    uint64_t vertex_budget = 0;       // that d' was found for; 0: none
+    uint32_t plants_expanded = 0;                   // of the tiles that were looked into
+    uint32_t plants_hidden = 0;                     // of expanded tiles, in view but behind the ground
+    float sample_distance_px = 0.0f;                // d' as drawn
+    uint64_t vertex_budget = 0;                     // that d' was found for; 0: none
     uint64_t cloud_plants = 0;                      // that clouds stood for
     uint64_t triangles = 0, lines = 0, points = 0;  // drawn, of plants
     uint64_t terrain_triangles = 0;
@@ -28,7 +29,7 @@ struct FrameReport {
         0;                       // large ones beyond the list's capacity in the last finished frame; it grows
     uint32_t rested_frames = 0;  // the picture is the mean of so many frames before this one, and this one
     double stream_ms = 0.0, cull_ms = 0.0, lod_ms = 0.0, write_ms = 0.0;  // CPU
-    uint64_t gpu_bytes = 0;                              // buffers held
+    uint64_t gpu_bytes = 0;                                               // buffers held
     // Of a world that is read while it is flown over.
     uint32_t streamed_clouds = 0, streamed_plant_tiles = 0;  // in memory
     uint64_t stream_bytes_read = 0;                          // since the start, as stored

@@ -60,7 +60,7 @@ class TilePicture {
                                         random.next_in(-0.5f, 0.5f) * population.side_m),
                                   random.next_in(0.7f, 1.3f),
                                   pack_turn_about_y(random.next_in(0.0f, 6.28f)),
-                                  {uint32_t(i % plants.size()), random.next_bits()}});
+                                  {uint32_t(i % plants.size()), uint32_t(random.next_bits())}});
         make_tiles(placements, scene);
         finish_tiles(scene, bounds);
         picture->tree_ = build_tile_tree(scene, plants);
@@ -95,7 +95,8 @@ class TilePicture {
         settings.sample_distance_px = frustum.focal_px / nearest_m / std::sqrt(density);
         work_.begin(1);
         if (by_cloud) {
-            const CloudTile cloud{0, origin, bounds_camera, nearest_m, tile().plant_count, 0};
+            const CloudTile cloud{
+                0, origin, bounds_camera, nearest_m, tile().cloud.finest_density(), tile().plant_count, 0};
             expand_clouds({&cloud, 1}, geometry_, frustum, settings, 0, work_.part(0));
         } else {
             expand_plants({origin, true, scene_.positions, scene_.turns, scene_.plant_models}, geometry_,

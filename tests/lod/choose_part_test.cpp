@@ -174,7 +174,9 @@ TEST(ChooseLines, EachPlantGoesOverAtADistanceOfItsOwn) {
             with_lines += choose_part(part, view_at(per_meter), {}, float(i) / k_plants).lines > 0
                               ? 1.0f / k_plants
                               : 0.0f;
-        if (before >= 0.0f) EXPECT_NEAR(with_lines, before, 0.08f) << per_meter;
+        if (before >= 0.0f) {
+            EXPECT_NEAR(with_lines, before, 0.08f) << per_meter;
+        }
         before = with_lines;
     }
     EXPECT_FLOAT_EQ(before, 1.0f);

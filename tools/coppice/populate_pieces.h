@@ -1,6 +1,7 @@
 // The pieces a populated scene consists of: packed plants, packs of tiles, and scene.json, which names them all; a mosaic's
-// scene.json names those of its scenes. Each is made on its own from what the author wrote and the pieces before it, is written whole or not at all, and says in its name
-// or head what it was made of: so any of them can be made by another process, and none is made twice.
+// scene.json names those of its scenes. Each is made on its own from what the author wrote and the pieces before it, is
+// written whole or not at all, and says in its name or head what it was made of: so any of them can be made by another
+// process, and none is made twice.
 #pragma once
 #include <cstdint>
 #include <set>

@@ -41,7 +41,7 @@ class SceneReader {
                         role_ == SceneRole::root ? "a mosaic of scenes is never loaded as a whole"
                                                  : "a mosaic of scenes cannot be referred to",
                         role_ == SceneRole::root
-                            ? "populate it with coppice populate, then play the scene.json of that folder"
+                            ? "populate it: coppice populate SCENE -o DIR, then coppice play DIR"
                             : "refer to its scenes, or make a mosaic of both");
         scene_.name = root_.text("name", std::filesystem::path(scene_.path).stem().stem().string());
         scene_.sample_distance_px = root_.real("sample_distance_px", 0.01f, 1000.0f, 1.0f);

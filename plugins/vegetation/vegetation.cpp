@@ -39,7 +39,8 @@ PrimitiveCounts counts_of(const FrameReport& report) {
 class VegetationSystems final : public Vegetation {
   public:
     explicit VegetationSystems(const VegetationSettings& settings)
-        : settings_(settings), slot_counts_(settings.frame_slots) {}
+        : settings_(settings), slot_counts_(std::max(settings.frame_slots, 1u)) {}
+    ~VegetationSystems() override { drop_scene(); }
 
     Status start() {
         COPPICE_TRY(rasteriser_,
@@ -60,8 +61,11 @@ class VegetationSystems final : public Vegetation {
     Status set_scene(const Scene& scene, std::vector<Plant> plants) override {
         COPPICE_CHECK(check_scene(scene, plants.size()));
         const std::vector<TileNode> tree = build_tile_tree(scene, plants);
-        COPPICE_TRY(SceneGeometry geometry, gather_geometry(scene, plants, tree));
-        COPPICE_CHECK(show(std::move(geometry), make_grounds(scene.terrain), scene.light));
+        std::vector<Ground> grounds = make_grounds(scene.terrain);
+        GeometrySource source{scene.path, scene.models, plants, {}, 0, grounds};
+        for (const TileNode& tile : tree) source.clouds.push_back(&tile.cloud);
+        COPPICE_TRY(SceneGeometry geometry, gather_geometry(source));
+        COPPICE_CHECK(show(std::move(geometry), std::move(grounds), scene.light));
         return add_tiles(scene, tree);
     }
 
@@ -137,6 +141,8 @@ class VegetationSystems final : public Vegetation {
         geometry.owners = {};
         geometry_ = std::move(geometry);
         grounds_ = std::move(grounds);
+        for (Ground& ground : grounds_) ground.coarse.vertices = {};
+        refused_entries_ = UINT32_MAX;
         light_ = light;
         return {};
     }
@@ -203,11 +209,13 @@ class VegetationSystems final : public Vegetation {
     }
 
     void drop_scene() {
+        if (residency_) residency_->drop_plants(*settings_.world);
         for (const ChunkId& chunk : chunks_) settings_.world->destroy_chunk(chunk);
         chunks_.clear();
         residency_.reset();
         geometry_ = {};
         grounds_.clear();
+        report_ = {};
         scene_triangles_ = 0;
         moved_ = true;
     }
@@ -227,6 +235,13 @@ class VegetationSystems final : public Vegetation {
                 keep_ = false;
             }
         if (!keep_) rested_ = 0;
+        ++averaged_;
+        if (std::exchange(tiles_changed_, false)) {
+            // The mean begins again, but d' stays as fine as it is by now, and with it what is wished for.
+            rested_ = std::min({rested_, k_frames_to_finest, std::max(frame_.accumulate_limit, 1u) - 1});
+            averaged_ = 0;
+        }
+        if (rested_ == 0) averaged_ = 0;
         settled_ = keep_ && rested_ >= frame_.accumulate_limit;
         report_.rested_frames = rested_;
         // At rest d' falls from what the moving view's budget left it.
@@ -234,6 +249,7 @@ class VegetationSystems final : public Vegetation {
         if (rested_ > 0)
             rested_from.sample_distance_px = std::max(frame_.sample_distance_px, last_solved_px_);
         resting_ = resting_frame(rested_, rested_from);
+        resting_.new_share = mean_share(averaged_);
         drawn_ = frame_;
         drawn_.sample_distance_px = resting_.sample_distance_px;
         budget_ = find_budget();
@@ -264,12 +280,11 @@ class VegetationSystems final : public Vegetation {
         predict_motion();
         frustum_ = make_frustum(camera_, rasteriser_->width(), rasteriser_->height());
         see_grounds();
-        if (residency_) {
-            if (residency_->update(world, chunks_.front(), geometry_, *rasteriser_, slot_,
-                                   frame_.wait_for_tiles))
-                moved_ = true;
-            if (frame_.wait_for_tiles) wait_for_tiles(world);
-        }
+        const bool waits = residency_ && frame_.wait_for_tiles;
+        if (residency_ && residency_->update(world, chunks_.front(), geometry_, *rasteriser_, slot_, waits))
+            tiles_changed_ = !waits;  // frames that waited lack nothing
+        begin_frame();
+        if (waits && !settled_) wait_for_tiles(world);
         report_.stream_ms = now_ms() - begin;
     }
 
@@ -294,19 +309,19 @@ class VegetationSystems final : public Vegetation {
 
     // What arrives shows what else is needed: once for each level of the hierarchy.
     void wait_for_tiles(World& world) {
-        drawn_ = frame_;
+        const TileList::Tiles tiles(world);
+        const TileList::Plants plants(world);
         for (int round = 0; round < k_most_rounds; ++round) {
-            list(TileList::Tiles(world), TileList::Plants(world), drawn_.sample_distance_px);
+            list(tiles, plants, drawn_.sample_distance_px);
+            if (budget_ > 0) solve(tiles, plants);
             residency_->wish(tile_list_.wishes());
             residency_->wait();
             if (!residency_->update(world, chunks_.front(), geometry_, *rasteriser_, slot_, true)) return;
-            moved_ = true;
         }
     }
 
     void list_tiles(const TileList::Tiles& tiles, const TileList::Plants& plants) {
         double begin = now_ms();
-        begin_frame();
         if (settled_) return;
         list(tiles, plants, drawn_.sample_distance_px);
         report_.cull_ms = now_ms() - begin;
@@ -323,7 +338,8 @@ class VegetationSystems final : public Vegetation {
         const float spread_px =
             widest_spread_px(geometry_.least_importance, geometry_.most_line_width, coarsest);
         tile_list_.list(tiles, plants, frustum_, camera_.position_world,
-                        {drawn_.level_of_detail ? sample_distance_px : 0.0f, motion_m_, horizon, spread_px});
+                        {drawn_.level_of_detail ? sample_distance_px / std::sqrt(drawn_.splat_factor) : 0.0f,
+                         motion_m_, horizon, spread_px});
         frame_plants_.see(tile_list_, geometry_, frustum_, drawn_, horizon, spread_px);
     }
 
@@ -367,7 +383,7 @@ class VegetationSystems final : public Vegetation {
         work_.begin(run_count + 2);
         frame_plants_.draw(tile_list_, geometry_, frustum_, drawn_, resting_.index, work_, 1);
         report_.terrain_triangles = ground_expander_.expand(ground_list_.in_view(), geometry_, frustum_,
-                                                              ground_error_px(drawn_), work_.part(0));
+                                                            ground_error_px(drawn_), work_.part(0));
         if (residency_) residency_->wish(tile_list_.wishes());
         report_.lod_ms = now_ms() - begin;
     }
@@ -387,6 +403,9 @@ class VegetationSystems final : public Vegetation {
                 refused_entries_ = size.entries;
                 log_warning("{}", to_string(grown.error()));
             }
+            if (size.instances > rasteriser_->instances(slot_).size() ||
+                size.entries > rasteriser_->entries(slot_).size())
+                refused_entries_ = std::min(refused_entries_, size.entries);
         }
         layout_ = work_.gather(rasteriser_->instances(slot_), rasteriser_->entries(slot_));
         rasteriser_->set_frame(
@@ -457,7 +476,9 @@ class VegetationSystems final : public Vegetation {
     uint32_t rested_ = 0;
     bool moved_ = true;  // what is drawn changed in another way
     bool keep_ = false, keep_refused_ = false;
-    bool settled_ = false;  // the picture shows the mean of all frames there will be
+    uint32_t averaged_ = 0;       // frames that the mean is of, before this one
+    bool tiles_changed_ = false;  // of a streamed world, since the last frame
+    bool settled_ = false;        // the picture shows the mean of all frames there will be
     RestingFrame resting_;
     FrameSettings drawn_;  // frame_, with the d' of the resting view
 

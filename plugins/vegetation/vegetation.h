@@ -2,13 +2,14 @@
 // schedule and its passes in the host's frame graph. A frame of the host:
 //
 //     vegetation->set_camera(camera);  vegetation->set_settings(settings);
-//     schedule.run();                               // of ours: cull, lod, draw, report
+//     schedule.run();                               // of ours: stream, cull, lod, draw, report
 //     frame_graph.record(frame.commands, frame.timestamps);
 //     ... submit; vegetation->color() then holds the picture
 //
 // One thread at a time; inside, the jobs of runtime/core/jobs.h. Systems and passes refer to the Vegetation: run
-// neither the schedule nor the frame graph after it is gone, and destroy all three before the registry that loaded the
-// plugin. Its destructor waits for the device.
+// neither the schedule nor the frame graph after it is gone, record the frame graph after each run of the schedule, and
+// destroy all three before the world, and that before the registry that loaded the plugin. Its destructor waits for the
+// device.
 #pragma once
 #include <cstdint>
 #include <memory>

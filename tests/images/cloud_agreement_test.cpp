@@ -97,7 +97,7 @@ class TilePicture {
         if (by_cloud) {
             const CloudTile cloud{
                 0, origin, bounds_camera, nearest_m, tile().cloud.finest_density(), tile().plant_count, 0};
-            expand_clouds({&cloud, 1}, geometry_, frustum, settings, 0, work_.part(0));
+            expand_clouds({&cloud, 1}, geometry_, frustum, settings, work_.part(0));
         } else {
             expand_plants({origin, true, scene_.positions, scene_.turns, scene_.plant_models}, geometry_,
                           frustum, settings, 0, work_.part(0));

@@ -93,7 +93,7 @@ void TileList::visit(Pending at, const Frustum& frustum, const Settings& setting
                 {levels.first_child + i, seen.inside, refined, at.soon || suffices, at.space_camera});
     }
     if (refined || !at.drawn || levels.cloud == TileLevels::k_none) return;
-    stand_in_count += !suffices;
+    stand_in_count += !suffices && (levels.child_count > 0 || levels.is_streamed);
     clouds_.push_back({levels.cloud, seen.origin_camera, seen.bounds_camera, seen.nearest_m,
                        levels.finest_density, tile.plant_count, levels.triangle_count});
 }
@@ -103,7 +103,10 @@ void TileList::collect_plants(const Plants& plants) {
     plants.each_chunk([&](const ChunkView&, std::span<const PlantPosition> positions,
                           std::span<const PlantTurn> turns, std::span<const PlantModel> models,
                           const Tile& tile) {
-        plants_of_row_[size_t(&tile - tile_of_row_.data())] = {positions, turns, models};
+        // Another user of the world may have tiles too.
+        const size_t row = (uintptr_t(&tile) - uintptr_t(tile_of_row_.data())) / sizeof(Tile);
+        if (row >= tile_of_row_.size()) return;
+        plants_of_row_[row] = {positions, turns, models};
         ++tile_count;
     });
 }

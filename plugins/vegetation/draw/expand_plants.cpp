@@ -55,9 +55,9 @@ CloudView view_of(const CloudTile& tile, const Frustum& frustum) {
 
 // Of the points that are drawn at most, where the cloud stands in for what is not in memory.
 std::span<const float> drawable_densities(const CloudTile& tile, const DrawCloud& cloud,
-                                          const CloudView& seen, const FrameSettings& settings) {
+                                          const CloudView& seen) {
     const float farness = seen.pixels_per_meter / seen.nearest_pixels_per_meter;
-    const float most = tile.finest_density * farness * farness * settings.splat_factor;
+    const float most = tile.finest_density * farness * farness;
     const std::span<const float> all = cloud.densities;
     return most == most ? all.first(size_t(std::upper_bound(all.begin(), all.end(), most) - all.begin()))
                         : all;
@@ -70,14 +70,12 @@ void measure_clouds(std::span<const CloudTile> tiles, const SceneGeometry& geome
     for (const CloudTile& tile : tiles) {
         const DrawCloud& cloud = geometry.clouds[tile.cloud];
         const CloudView seen = view_of(tile, frustum);
-        add_cloud(histogram, drawable_densities(tile, cloud, seen, settings), seen.pixels_per_meter,
-                  settings);
+        add_cloud(histogram, drawable_densities(tile, cloud, seen), seen.pixels_per_meter, settings);
     }
 }
 
 void expand_clouds(std::span<const CloudTile> tiles, const SceneGeometry& geometry, const Frustum& frustum,
-                   const FrameSettings& settings, uint32_t rest_index, WorkPart& work) {
-    const float turn = turn_of(rest_index);
+                   const FrameSettings& settings, WorkPart& work) {
     for (const CloudTile& tile : tiles) {
         const DrawCloud& cloud = geometry.clouds[tile.cloud];
         const CloudView seen = view_of(tile, frustum);
@@ -85,14 +83,16 @@ void expand_clouds(std::span<const CloudTile> tiles, const SceneGeometry& geomet
         FrameSettings tile_settings = settings;
         tile_settings.sample_distance_px =
             std::max(settings.sample_distance_px,
-                     seen.nearest_pixels_per_meter / std::sqrt(std::max(tile.finest_density, 1e-12f)));
+                     seen.nearest_pixels_per_meter *
+                         std::sqrt(settings.splat_factor / std::max(tile.finest_density, 1e-12f)));
         // A tile around the image plane has no depth to go by: all of it is drawn as its nearest place asks for.
         const float depth_m = std::max(glm::dot(frustum.forward, tile.bounds_camera.center()), 0.0f);
         const PartChoice choice = choose_cloud(cloud.densities, seen.pixels_per_meter, depth_m,
                                                seen.nearest_pixels_per_meter, tile_settings);
         if (choice.points == 0) continue;
-        work.add(cloud.geometry, choice, work.add_instance(instance_of(mat3(1.0f), 1.0f, tile.origin_camera)),
-                 turn);
+        // From the beginning also at rest: what is asked for is the prefix up to a density.
+        work.add(cloud.geometry, choice,
+                 work.add_instance(instance_of(mat3(1.0f), 1.0f, tile.origin_camera)));
     }
 }
 

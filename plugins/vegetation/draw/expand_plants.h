@@ -25,7 +25,7 @@ void measure_clouds(std::span<const CloudTile> tiles, const SceneGeometry& geome
                     const FrameSettings& settings, BudgetHistogram& histogram);
 // Tiles that their clouds stand for, into one part of the work list.
 void expand_clouds(std::span<const CloudTile> tiles, const SceneGeometry& geometry, const Frustum& frustum,
-                   const FrameSettings& settings, uint32_t rest_index, WorkPart& work);
+                   const FrameSettings& settings, WorkPart& work);
 
 // What the ground may be off by on the picture.
 inline float ground_error_px(const FrameSettings& settings) { return settings.level_of_detail ? 1.0f : 0.0f; }

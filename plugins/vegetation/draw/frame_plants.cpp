@@ -44,7 +44,7 @@ void FramePlants::draw(const TileList& tiles, const SceneGeometry& geometry, con
             if (i < run_count_)
                 draw_plants(seen_[i], geometry, settings, rest_index, part);
             else
-                expand_clouds(tiles.clouds(), geometry, frustum, settings, rest_index, part);
+                expand_clouds(tiles.clouds(), geometry, frustum, settings, part);
         }
     });
 }

@@ -18,7 +18,7 @@ constexpr uint32_t k_first_big_triangles = 1u << 18;
 constexpr uint32_t k_first_instances = 1u << 14, k_first_entries = 1u << 16;
 constexpr uint64_t k_pixel_radiance_bytes = 12;
 constexpr uint64_t k_upload_bytes = uint64_t(4) << 20;  // of a frame: what 25 tiles' clouds take
-constexpr uint32_t k_pixels_a_group = 256;  // accumulate.comp's k_run
+constexpr uint32_t k_pixels_a_group = 256;              // accumulate.comp's k_run
 // Of resolve.comp. A CPU wants few borders of blocks, a GPU many blocks.
 constexpr uint32_t k_cpu_columns = 4, k_cpu_rows = 64, k_gpu_columns = 1, k_gpu_rows = 16;
 
@@ -145,10 +145,15 @@ Status Rasteriser::set_geometry(const GeometryData& data) {
                     std::to_string(vertex_count) + " vertices in one scene",
                     "this device takes " + std::to_string(device_.limits.texel_elements));
     vkDeviceWaitIdle(device_.handle);
+    // The old ones need not have room beside the new ones.
+    COPPICE_TRY(vertices_, gpu::Buffer::create(device_, texel_buffer(0, VK_FORMAT_R32G32B32A32_UINT,
+                                                                     gpu::MemoryUse::device, "vertices")));
+    COPPICE_TRY(owners_, gpu::Buffer::create(
+                             device_, texel_buffer(0, VK_FORMAT_R32_UINT, gpu::MemoryUse::device, "owners")));
     COPPICE_TRY(gpu::Buffer vertices,
-                gpu::Buffer::create(device_, texel_buffer(vertex_count * sizeof(PackedVertex),
-                                                          VK_FORMAT_R32G32B32A32_UINT,
-                                                          gpu::MemoryUse::device, "vertices")));
+                gpu::Buffer::create(
+                    device_, texel_buffer(vertex_count * sizeof(PackedVertex), VK_FORMAT_R32G32B32A32_UINT,
+                                          gpu::MemoryUse::device, "vertices")));
     COPPICE_TRY(gpu::Buffer owners,
                 gpu::Buffer::create(device_, texel_buffer(owner_count * sizeof(uint32_t), VK_FORMAT_R32_UINT,
                                                           gpu::MemoryUse::device, "owners")));
@@ -173,6 +178,8 @@ Status Rasteriser::set_geometry(const GeometryData& data) {
 bool Rasteriser::stream_points(uint32_t slot, uint32_t first_vertex, std::span<const PackedVertex> points,
                                uint32_t first_owner, std::span<const uint32_t> owners) {
     const gpu::Buffer& ring = slots_[slot].uploads;
+    if (upload_bytes_ > 0 && slot != upload_slot_) return false;
+    upload_slot_ = slot;
     if (points.size_bytes() + owners.size_bytes() > ring.size_bytes() - upload_bytes_ || !ring.mapped())
         return false;
     auto stage = [&](auto items, uint64_t first_item, std::vector<VkBufferCopy>& uploads) {
@@ -279,19 +286,20 @@ void Rasteriser::add_passes() {
     radiance_resource_ = graph_.add_buffer("radiance", &radiance_);
     big_count_resource_ = graph_.add_buffer("big count", &slots_[0].big_count);
 
-    upload_pass_ = graph_.add_pass(
-        "stream in",
-        {{vertices_resource_, BufferAccess::transfer_write}, {owners_resource_, BufferAccess::transfer_write}},
-        [this](VkCommandBuffer commands) {
-            const VkBuffer ring = slots_[slot_].uploads.handle();
-            vkCmdCopyBuffer(commands, ring, vertices_.handle(), uint32_t(vertex_uploads_.size()),
-                            vertex_uploads_.data());
-            vkCmdCopyBuffer(commands, ring, owners_.handle(), uint32_t(owner_uploads_.size()),
-                            owner_uploads_.data());
-            vertex_uploads_.clear();
-            owner_uploads_.clear();
-            upload_bytes_ = 0;
-        });
+    upload_pass_ =
+        graph_.add_pass("stream in",
+                        {{vertices_resource_, BufferAccess::transfer_write},
+                         {owners_resource_, BufferAccess::transfer_write}},
+                        [this](VkCommandBuffer commands) {
+                            const VkBuffer ring = slots_[upload_slot_].uploads.handle();
+                            vkCmdCopyBuffer(commands, ring, vertices_.handle(),
+                                            uint32_t(vertex_uploads_.size()), vertex_uploads_.data());
+                            vkCmdCopyBuffer(commands, ring, owners_.handle(), uint32_t(owner_uploads_.size()),
+                                            owner_uploads_.data());
+                            vertex_uploads_.clear();
+                            owner_uploads_.clear();
+                            upload_bytes_ = 0;
+                        });
     clear_pass_ = graph_.add_pass(
         "clear",
         {{visibility_resource_, BufferAccess::transfer_write}, {big_resource_, BufferAccess::transfer_write}},
@@ -308,19 +316,19 @@ void Rasteriser::add_passes() {
     add_draw("triangles", WorkKind::triangles,
              {{visibility_resource_, BufferAccess::compute_atomic},
               {big_resource_, BufferAccess::compute_read_write}});
-    big_pass_ = graph_.add_pass(
-        "big triangles",
-        {{visibility_resource_, BufferAccess::compute_atomic},
-         {big_resource_, BufferAccess::compute_read},
-         {vertices_resource_, BufferAccess::compute_read}},
-        [this](VkCommandBuffer commands) {
-            const Slot& slot = slots_[slot_];
-            const gpu::Buffer* buffers[] = {&visibility_, &vertices_, &slot.entries, &slot.instances,
-                                            &big_triangles_};
-            big_pipeline_.bind(commands, buffers, &raster_, sizeof raster_);
-            big_pipeline_.dispatch(commands,
-                                   device_.limits.is_cpu ? 64 : 4096);  // groups stride over the list
-        });
+    big_pass_ = graph_.add_pass("big triangles",
+                                {{visibility_resource_, BufferAccess::compute_atomic},
+                                 {big_resource_, BufferAccess::compute_read},
+                                 {vertices_resource_, BufferAccess::compute_read}},
+                                [this](VkCommandBuffer commands) {
+                                    const Slot& slot = slots_[slot_];
+                                    const gpu::Buffer* buffers[] = {&visibility_, &vertices_, &slot.entries,
+                                                                    &slot.instances, &big_triangles_};
+                                    big_pipeline_.bind(commands, buffers, &raster_, sizeof raster_);
+                                    big_pipeline_.dispatch(
+                                        commands,
+                                        device_.limits.is_cpu ? 64 : 4096);  // groups stride over the list
+                                });
     big_count_pass_ = graph_.add_pass(
         "count big triangles",
         {{big_resource_, BufferAccess::transfer_read}, {big_count_resource_, BufferAccess::transfer_write}},
@@ -414,7 +422,8 @@ void Rasteriser::set_frame(uint32_t slot, const WorkList::Layout& layout, const 
 
 void Rasteriser::skip_frame() {
     for (uint32_t pass : draw_passes_) graph_.set_active(pass, false);
-    for (uint32_t pass : {upload_pass_, clear_pass_, big_pass_, big_count_pass_, accumulate_pass_, resolve_pass_})
+    for (uint32_t pass :
+         {upload_pass_, clear_pass_, big_pass_, big_count_pass_, accumulate_pass_, resolve_pass_})
         graph_.set_active(pass, false);
 }
 

@@ -39,7 +39,7 @@ class Rasteriser {
     Status resize(uint32_t width, uint32_t height);
 
     // Points and their owners into the room that was reserved, by this slot's frame, before it draws: through a ring of
-    // mapped memory. False: no more room in the ring for this frame. Requires places inside the geometry.
+    // mapped memory. False: no more room in the ring for this frame, or what another slot staged was never recorded. Requires places inside the geometry.
     bool stream_points(uint32_t slot, uint32_t first_vertex, std::span<const PackedVertex> points,
                        uint32_t first_owner, std::span<const uint32_t> owners);
     // The same at once; waits for the device.
@@ -107,14 +107,16 @@ class Rasteriser {
     ResourceIndex visibility_resource_ = 0, color_resource_ = 0, radiance_resource_ = 0, big_resource_ = 0;
     std::array<uint32_t, k_work_kinds> draw_passes_{};
     ResourceIndex vertices_resource_ = 0, owners_resource_ = 0;
-    uint32_t upload_pass_ = 0, clear_pass_ = 0, big_pass_ = 0, big_count_pass_ = 0, accumulate_pass_ = 0, resolve_pass_ = 0;
+    uint32_t upload_pass_ = 0, clear_pass_ = 0, big_pass_ = 0, big_count_pass_ = 0, accumulate_pass_ = 0,
+             resolve_pass_ = 0;
     ResourceIndex big_count_resource_ = 0;
     uint32_t big_limit_ = 0, dropped_triangles_ = 0;
 
     // Of the frame about to be recorded.
     uint32_t slot_ = 0;
     std::vector<VkBufferCopy> vertex_uploads_, owner_uploads_;
-    uint64_t upload_bytes_ = 0;  // of the slot's ring
+    uint64_t upload_bytes_ = 0;  // of the ring of upload_slot_
+    uint32_t upload_slot_ = 0;
     WorkList::Layout layout_{};
     RasterConstants raster_{};
     ResolveConstants resolve_{};

@@ -51,7 +51,7 @@ uint32_t TileResidency::find_place(World& world, ChunkId tiles) {
         uint32_t oldest = k_none;
         for (uint32_t p = 0; p < places_.size(); ++p) {
             const uint32_t wished_at = rows_[places_[p].row].cloud_wished_at;
-            if (wished_at != turn_ &&
+            if (wished_at != turn_ && places_[p].filled_at != updates_ &&
                 (oldest == k_none || wished_at < rows_[places_[oldest].row].cloud_wished_at))
                 oldest = p;
         }
@@ -82,14 +82,18 @@ bool TileResidency::add_cloud(World& world, ChunkId tiles, SceneGeometry& geomet
     const std::span<const uint32_t> owners = bits_of(block.cloud.densities);
     if (at_once) {
         if (auto done = rasteriser.upload_points(at.first_point, block.cloud.points, at.first_owner, owners);
-            !done)
+            !done) {
             log_warning("{}", to_string(done.error()));
+            free_places_.push_back(place);
+            streamer_.release(block.block);
+            return true;
+        }
     } else if (!rasteriser.stream_points(slot, at.first_point, block.cloud.points, at.first_owner, owners)) {
         free_places_.push_back(place);
         return false;
     }
     set_cloud(geometry, cloud, block.cloud);
-    places_[place].row = row;
+    places_[place] = {row, updates_};
     rows_[row].place = place;
     set_cloud_of(world, tiles, row, cloud);
     return true;
@@ -127,8 +131,17 @@ void TileResidency::drop(World& world, ChunkId tiles, TileBlockName block) {
     streamer_.release(block);
 }
 
+void TileResidency::drop_plants(World& world) {
+    for (Row& row : rows_) {
+        if (row.plants) world.destroy_chunk(row.plants);
+        row.plants = {};
+    }
+    plant_tiles_ = 0;
+}
+
 bool TileResidency::update(World& world, ChunkId tiles, SceneGeometry& geometry, Rasteriser& rasteriser,
                            uint32_t slot, bool at_once) {
+    ++updates_;
     streamer_.take_finished(finished_);
     for (FinishedTileBlock& block : finished_)
         if (block.status)
@@ -149,16 +162,17 @@ bool TileResidency::update(World& world, ChunkId tiles, SceneGeometry& geometry,
     arrived_.erase(arrived_.begin(), arrived_.begin() + ptrdiff_t(done));
 
     streamer_.suggest_evictions(evictions_);
-    size_t dropped = 0;
+    size_t missed = 0;
     for (const TileBlockName& block : evictions_) {
         // What has arrived but has not been put anywhere yet stays for the frame that does.
         const bool waits = std::any_of(arrived_.begin(), arrived_.end(),
                                        [&](const FinishedTileBlock& other) { return other.block == block; });
         if (waits) continue;
+        const Row& row = rows_[row_of(block)];
+        missed += turn_ == (block.kind == TileBlockKind::cloud ? row.cloud_wished_at : row.plants_wished_at);
         drop(world, tiles, block);
-        ++dropped;
     }
-    return done + dropped > 0;
+    return done + missed > 0;
 }
 
 void TileResidency::wish(std::span<const TileWish> wishes) {
@@ -172,6 +186,8 @@ void TileResidency::wish(std::span<const TileWish> wishes) {
             if (row.cloud_is_pinned) continue;
             cloud_count += row.cloud_wished_at != turn_;
             row.cloud_wished_at = turn_;
+        } else {
+            row.plants_wished_at = turn_;
         }
         requests_.push_back({{row.pack, row.node, wish.kind}, wish.priority});
     }
@@ -182,6 +198,9 @@ void TileResidency::wish(std::span<const TileWish> wishes) {
                    std::tuple(b.block.kind, -b.priority, b.block.pack, b.block.node);
         });
         ++turn_;
+        for (const TileRequest& request : requests_)
+            if (request.block.kind == TileBlockKind::plants)
+                rows_[row_of(request.block)].plants_wished_at = turn_;
         cloud_count = 0;
         std::erase_if(requests_, [&](const TileRequest& request) {
             if (request.block.kind != TileBlockKind::cloud) return false;

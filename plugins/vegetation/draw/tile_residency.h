@@ -27,9 +27,11 @@ class TileResidency {
 
     // What came since the last frame is put where it is drawn from, and what has to give way is dropped. Edits the world.
     // At once: through the device's queue, waiting; else through the slot's ring, and what does not fit there waits for
-    // the next frame. True where anything changed. A tile that cannot be read is reported once; its parent's cloud stays.
+    // the next frame. True where something came, or something that is wished for went. A tile that cannot be read is reported once; its parent's cloud stays.
     bool update(World& world, ChunkId tiles, SceneGeometry& geometry, Rasteriser& rasteriser, uint32_t slot,
                 bool at_once);
+    // All plants' chunks; for nothing else than the end.
+    void drop_plants(World& world);
     // In place of what was wished for before.
     void wish(std::span<const TileWish> wishes);
     // Until everything wished for was read that has room.
@@ -41,12 +43,13 @@ class TileResidency {
     struct Row {
         uint32_t pack = k_none, node = 0;
         uint32_t place = k_none;  // of the streamed clouds
-        uint32_t cloud_wished_at = 0;
+        uint32_t cloud_wished_at = 0, plants_wished_at = 0;
         bool cloud_is_pinned = false;
         ChunkId plants;
     };
     struct Place {
         uint32_t row = k_none;
+        uint32_t filled_at = 0;  // update(): two copies of one frame must not go to one place
     };
     uint32_t find_place(World& world, ChunkId tiles);
     void set_cloud_of(World& world, ChunkId tiles, uint32_t row, uint32_t cloud);
@@ -63,7 +66,8 @@ class TileResidency {
     std::vector<Place> places_;
     std::vector<uint32_t> free_places_;
     const uint32_t pinned_clouds_;
-    uint32_t turn_ = 0;  // of wish()
+    uint32_t turn_ = 0;     // of wish()
+    uint32_t updates_ = 0;  // of update()
     uint32_t plant_tiles_ = 0;
     std::vector<TileRequest> requests_;
     std::vector<FinishedTileBlock> finished_, arrived_;

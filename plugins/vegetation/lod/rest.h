@@ -8,6 +8,11 @@
 
 namespace coppice {
 
+// d' falls up to here.
+inline constexpr uint32_t k_frames_to_finest = 15;
+// Of one more frame in the mean of `averaged` before it, weights 1, 2, 3 ...: the later frames are the finer ones.
+inline float mean_share(uint32_t averaged) { return 2.0f / (float(averaged) + 2.0f); }
+
 struct RestingFrame {
     vec2 shift_px{0.0f};     // where in the pixel the frame is sampled, from its centre; |shift| <= 1/2
     float new_share = 1.0f;  // of this frame in the mean

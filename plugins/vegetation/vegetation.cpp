@@ -7,7 +7,7 @@
 //                                     them down, in parallel
 //   draw    write_work_list draw/     the jobs' lists, one behind the other, into the mapped buffers
 //   report  count           report/   what was drawn
-//   passes  clear, triangles, big triangles, lines, points ..., resolve: draw/rasteriser.cpp
+//   passes  stream in, clear, triangles, big triangles, lines, points ..., resolve: draw/rasteriser.cpp
 #include "plugins/vegetation/vegetation.h"
 
 #include <chrono>

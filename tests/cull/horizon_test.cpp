@@ -2,29 +2,12 @@
 #include "plugins/vegetation/cull/horizon.h"
 
 #include <gtest/gtest.h>
-#include <atomic>
-#include <cstdlib>
-#include <new>
 #include "plugins/terrain/build_patches.h"
 #include "plugins/terrain/grow_heights.h"
 #include "plugins/shared/noise.h"
 #include "plugins/vegetation/cull/ground_level.h"
 #include "runtime/core/random.h"
-
-namespace {
-std::atomic<size_t> g_allocation_count{0};
-}  // namespace
-
-void* operator new(std::size_t size) {
-    ++g_allocation_count;
-    if (void* memory = std::malloc(size ? size : 1)) return memory;
-    throw std::bad_alloc();
-}
-void* operator new[](std::size_t size) { return operator new(size); }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete[](void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
+#include "tests/count_allocations.h"
 
 namespace coppice {
 namespace {
@@ -503,7 +486,7 @@ TEST(Horizon, WarmFramesAllocateNothing) {
     Horizon horizon;
     Shot shot = towards_wall();
     horizon.build(&terrain, shot.camera.position_world, shot.frustum(), 1.0f);
-    const size_t before = g_allocation_count;
+    const size_t before = test::g_allocation_count;
     bool any = false;
     for (int i = 0; i < 50; ++i) {
         shot.camera.position_world.x = -60.0 + i;
@@ -512,7 +495,7 @@ TEST(Horizon, WarmFramesAllocateNothing) {
         const vec3 back(i - 40.0f, 0.0f, 0.0f);  // from where towards_wall stands
         any |= horizon.hidden({k_behind_wall.min - back, k_behind_wall.max - back}, 1.0f);
     }
-    EXPECT_EQ(g_allocation_count, before);
+    EXPECT_EQ(test::g_allocation_count, before);
     EXPECT_TRUE(any);
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include "plugins/vegetation/cook/cook_plant.h"
 #include "tests/cook/shapes.h"
+#include "tests/draw/expand_run.h"
 
 namespace coppice {
 namespace {
@@ -66,8 +67,8 @@ class ExpandCells : public ::testing::Test {
         const PlantModel model{0, 5};
         WorkList work;
         work.begin(1);
-        expand_plants({vec3(0.0f), false, {&position, 1}, {&turn, 1}, {&model, 1}}, geometry,
-                      frustum_of(vertical_fov_rad), settings, 0, work.part(0));
+        expand_run({vec3(0.0f), false, {&position, 1}, {&turn, 1}, {&model, 1}}, geometry,
+                   frustum_of(vertical_fov_rad), settings, 0, work.part(0));
         return work;
     }
     static double points_a_m2(uint32_t cell, float distance_m, const FrameSettings& settings) {

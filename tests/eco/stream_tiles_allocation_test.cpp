@@ -1,34 +1,8 @@
 // The frame's part of streaming must not touch the heap once it is warm; the streamer's threads may.
-#include <cstdlib>
-#include <new>
 #include <gtest/gtest.h>
 #include "plugins/vegetation/eco/stream_tiles.h"
 #include "tests/eco/made_tiles.h"
-
-namespace {
-thread_local size_t t_allocation_count = 0;
-
-void* count_and_allocate(std::size_t size, std::size_t alignment) {
-    ++t_allocation_count;
-    void* memory = std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
-    if (!memory) throw std::bad_alloc();
-    return memory;
-}
-}  // namespace
-
-void* operator new(std::size_t size) {
-    return count_and_allocate(size ? size : 1, alignof(std::max_align_t));
-}
-void* operator new[](std::size_t size) { return operator new(size); }
-void* operator new(std::size_t size, std::align_val_t alignment) {
-    return count_and_allocate(size ? size : 1, std::size_t(alignment));
-}
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete[](void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
-void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
+#include "tests/count_allocations.h"
 
 namespace coppice {
 namespace {
@@ -59,13 +33,13 @@ TEST(StreamTilesAllocation, WarmFramesAllocateNothing) {
         streamer.suggest_evictions(evicted);
         for (const TileBlockName& name : evicted) streamer.release(name);
     };
-    const size_t at_start = t_allocation_count;
+    const size_t at_start = test::t_thread_allocation_count;
     frame();
-    EXPECT_GT(t_allocation_count, at_start) << "the counter does not count";
+    EXPECT_GT(test::t_thread_allocation_count, at_start) << "the counter does not count";
     frame();
-    const size_t warm = t_allocation_count;
+    const size_t warm = test::t_thread_allocation_count;
     for (int i = 0; i < 200; ++i) frame();
-    EXPECT_EQ(t_allocation_count, warm);
+    EXPECT_EQ(test::t_thread_allocation_count, warm);
     EXPECT_GT(taken, 1000u) << "nothing was streamed";
 }
 

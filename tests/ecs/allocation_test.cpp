@@ -1,36 +1,9 @@
 // A warm frame must not touch the heap.
-#include <atomic>
-#include <cstdlib>
-#include <new>
 #include <gtest/gtest.h>
 #include "runtime/core/jobs.h"
 #include "runtime/ecs/schedule.h"
 #include "tests/ecs/components.h"
-
-namespace {
-std::atomic<size_t> g_allocation_count{0};
-
-void* count_and_allocate(std::size_t size, std::size_t alignment) {
-    ++g_allocation_count;
-    void* memory = std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
-    if (!memory) throw std::bad_alloc();
-    return memory;
-}
-}  // namespace
-
-void* operator new(std::size_t size) {
-    return count_and_allocate(size ? size : 1, alignof(std::max_align_t));
-}
-void* operator new[](std::size_t size) { return operator new(size); }
-void* operator new(std::size_t size, std::align_val_t alignment) {
-    return count_and_allocate(size ? size : 1, std::size_t(alignment));
-}
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete[](void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
-void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
+#include "tests/count_allocations.h"
 
 namespace coppice {
 namespace {

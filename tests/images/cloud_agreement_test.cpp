@@ -3,14 +3,12 @@
 // Measured: coverage within 0.7 %, colour within 0.7 % of the stand's mean. Handing over changes 0.8 to 1.9 times what
 // another step of a hundredth does: most of it where plants still draw lines of which the cloud draws points.
 #include <gtest/gtest.h>
-#include "plugins/modeller/grow.h"
-#include "plugins/vegetation/cook/cook_plant.h"
-#include "plugins/vegetation/draw/expand_plants.h"
 #include "plugins/vegetation/eco/make_tiles.h"
 #include "plugins/vegetation/plant/surface.h"
-#include "runtime/core/file.h"
 #include "runtime/core/random.h"
 #include "runtime/gpu/commands.h"
+#include "tests/draw/expand_run.h"
+#include "tests/images/cook_species.h"
 
 namespace coppice {
 namespace {
@@ -24,14 +22,6 @@ struct Population {
     uint32_t plant_count;
     float side_m;
 };
-
-Result<Plant> grow_and_cook(const std::string& species) {
-    const std::string path = std::string(COPPICE_CONTENT_DIR) + "/species/" + species + ".json";
-    COPPICE_TRY(const std::string text, read_text_file(path));
-    COPPICE_TRY(const PlantDescription description, modeller::grow_plant(text, path, 0));
-    COPPICE_TRY(std::vector<std::byte> bytes, cook_plant(description, {}));
-    return load_plant_from_memory(std::make_shared<std::vector<std::byte>>(std::move(bytes)), species);
-}
 
 struct Mean {
     double coverage_px = 0.0;
@@ -48,7 +38,7 @@ class TilePicture {
         std::vector<Plant> plants;
         std::vector<Box> bounds;
         for (const char* species : population.species) {
-            COPPICE_TRY(Plant plant, grow_and_cook(species));
+            COPPICE_TRY(Plant plant, cook_species(species));
             bounds.push_back(plant.bounds_plant);
             plants.push_back(std::move(plant));
         }
@@ -99,8 +89,8 @@ class TilePicture {
                 0, origin, bounds_camera, nearest_m, tile().cloud.finest_density(), tile().plant_count, 0};
             expand_clouds({&cloud, 1}, geometry_, frustum, settings, work_.part(0));
         } else {
-            expand_plants({origin, true, scene_.positions, scene_.turns, scene_.plant_models}, geometry_,
-                          frustum, settings, 0, work_.part(0));
+            expand_run({origin, true, scene_.positions, scene_.turns, scene_.plant_models}, geometry_,
+                       frustum, settings, 0, work_.part(0));
         }
         points = work_.part(0).points;
         const WorkList::Size size = work_.size();

@@ -1,33 +1,6 @@
 // From culling to the recorded passes a frame must not touch the heap once it is warm: on any thread.
-#include <atomic>
-#include <cstdlib>
-#include <new>
 #include "tests/images/hills.h"
-
-namespace {
-std::atomic<size_t> g_allocation_count{0};
-
-void* count_and_allocate(std::size_t size, std::size_t alignment) {
-    ++g_allocation_count;
-    void* memory = std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
-    if (!memory) throw std::bad_alloc();
-    return memory;
-}
-}  // namespace
-
-void* operator new(std::size_t size) {
-    return count_and_allocate(size ? size : 1, alignof(std::max_align_t));
-}
-void* operator new[](std::size_t size) { return operator new(size); }
-void* operator new(std::size_t size, std::align_val_t alignment) {
-    return count_and_allocate(size ? size : 1, std::size_t(alignment));
-}
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete[](void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
-void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
+#include "tests/count_allocations.h"
 
 namespace coppice {
 namespace {
@@ -35,7 +8,7 @@ namespace {
 TEST(FrameAllocation, WarmFramesAllocateNothing) {
     auto hills = Hills::create({});
     ASSERT_TRUE(hills) << to_string(hills.error());
-    (*hills)->count_allocations = [] { return g_allocation_count.load(); };
+    (*hills)->count_allocations = [] { return test::g_allocation_count.load(); };
     for (uint64_t budget : {uint64_t(0), uint64_t(120'000)}) {
         FrameSettings settings;
         settings.vertex_budget = budget;

@@ -1,16 +1,14 @@
 // Woods and meadows on hills, drawn by the vegetation plugin as a host does.
 #pragma once
 #include <gtest/gtest.h>
-#include "plugins/modeller/grow.h"
 #include "plugins/terrain/load_terrain.h"
-#include "plugins/vegetation/cook/cook_plant.h"
 #include "plugins/vegetation/eco/make_tiles.h"
 #include "plugins/vegetation/vegetation.h"
-#include "runtime/core/file.h"
 #include "runtime/core/random.h"
 #include "runtime/gpu/buffer.h"
 #include "runtime/gpu/commands.h"
 #include "runtime/plugin/registry.h"
+#include "tests/images/cook_species.h"
 
 namespace coppice {
 
@@ -104,13 +102,7 @@ class Hills {
         COPPICE_TRY(scene_.terrain, load_terrain(terrain, "", "hills"));
         std::vector<Box> bounds;
         for (const char* species : {"birch", "shrub", "grass"}) {
-            const std::string path = std::string(COPPICE_CONTENT_DIR) + "/species/" + species + ".json";
-            COPPICE_TRY(const std::string text, read_text_file(path));
-            COPPICE_TRY(const PlantDescription description, modeller::grow_plant(text, path, 0));
-            COPPICE_TRY(std::vector<std::byte> bytes, cook_plant(description, {}));
-            COPPICE_TRY(
-                Plant plant,
-                load_plant_from_memory(std::make_shared<std::vector<std::byte>>(std::move(bytes)), species));
+            COPPICE_TRY(Plant plant, cook_species(species));
             bounds.push_back(plant.bounds_plant);
             plants_.push_back(std::move(plant));
         }

@@ -1,9 +1,7 @@
 // Cells of a large plant that choose their levels for themselves cover together what the plant covers, from
 // nearby where each chooses otherwise, and leaving out what lies outside the view changes no pixel.
 #include <gtest/gtest.h>
-#include "plugins/modeller/grow.h"
-#include "plugins/vegetation/cook/cook_plant.h"
-#include "runtime/core/file.h"
+#include "tests/images/cook_species.h"
 #include "tests/images/plant_picture.h"
 
 namespace coppice {
@@ -11,14 +9,6 @@ namespace {
 
 constexpr double k_bound = 0.03;
 constexpr uint32_t k_side = 512;
-
-Result<Plant> cook_species(const std::string& species) {
-    const std::string path = std::string(COPPICE_CONTENT_DIR) + "/species/" + species + ".json";
-    COPPICE_TRY(const std::string text, read_text_file(path));
-    COPPICE_TRY(const PlantDescription description, modeller::grow_plant(text, path, 0));
-    COPPICE_TRY(std::vector<std::byte> bytes, cook_plant(description, {}));
-    return load_plant_from_memory(std::make_shared<std::vector<std::byte>>(std::move(bytes)), species);
-}
 
 class OctreeAgreement : public ::testing::Test {
   protected:

@@ -2,9 +2,9 @@
 #pragma once
 #include <memory>
 #include <vector>
-#include "plugins/vegetation/draw/expand_plants.h"
 #include "plugins/vegetation/plant/surface.h"
 #include "runtime/gpu/commands.h"
+#include "tests/draw/expand_run.h"
 
 namespace coppice {
 
@@ -59,8 +59,8 @@ class PlantPicture {
         PlantTurn turn{0, 0, 0, 32767};
         PlantModel plant_model{0, seed_ = mix_seed(seed_)};
         work_.begin(1);
-        counts_ = expand_plants({vec3(0.0f), inside, {&position, 1}, {&turn, 1}, {&plant_model, 1}},
-                                geometry_, frustum, settings, 0, work_.part(0));
+        counts_ = expand_run({vec3(0.0f), inside, {&position, 1}, {&turn, 1}, {&plant_model, 1}}, geometry_,
+                             frustum, settings, 0, work_.part(0));
         WorkList::Size size = work_.size();
         if (size.entries > rasteriser_->entries(0).size())
             COPPICE_CHECK(rasteriser_->grow(0, size.instances, size.entries));

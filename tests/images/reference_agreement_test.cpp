@@ -6,13 +6,11 @@
 // Measured: coverage within 2.8 %; colour within 3.4 % (pine), 3.1 (birch), 4.7 (oak at 60 px), 3.7 (grass) and 2.9 (sunflower).
 // With every triangle 1 % and 3.4 % (grass, whose blades are curved).
 #include <gtest/gtest.h>
-#include "plugins/modeller/grow.h"
-#include "plugins/vegetation/cook/cook_plant.h"
-#include "plugins/vegetation/draw/expand_plants.h"
-#include "runtime/core/file.h"
 #include "runtime/core/random.h"
 #include "runtime/gpu/commands.h"
 #include "tools/reference/trace.h"
+#include "tests/draw/expand_run.h"
+#include "tests/images/cook_species.h"
 
 namespace coppice {
 namespace {
@@ -32,14 +30,6 @@ struct Sum {
 struct Sums {
     Sum middle, beside;
 };
-
-Result<Plant> grow_and_cook(const std::string& species) {
-    const std::string path = std::string(COPPICE_CONTENT_DIR) + "/species/" + species + ".json";
-    COPPICE_TRY(const std::string text, read_text_file(path));
-    COPPICE_TRY(const PlantDescription description, modeller::grow_plant(text, path, 0));
-    COPPICE_TRY(std::vector<std::byte> bytes, cook_plant(description, {}));
-    return load_plant_from_memory(std::make_shared<std::vector<std::byte>>(std::move(bytes)), species);
-}
 
 // Three plants of one kind, in the middle and on both sides, relative to a camera in the origin.
 struct View {
@@ -139,8 +129,8 @@ class Drawer {
         for (uint32_t draw = 0; draw < draws; ++draw) {
             for (PlantModel& model : view.scene.plant_models) model.seed = random_.next_bits();
             work_.begin(1);
-            expand_plants({vec3(0.0f), true, view.scene.positions, view.scene.turns, view.scene.plant_models},
-                          geometry_, frustum, settings, 0, work_.part(0));
+            expand_run({vec3(0.0f), true, view.scene.positions, view.scene.turns, view.scene.plant_models},
+                       geometry_, frustum, settings, 0, work_.part(0));
             const WorkList::Size size = work_.size();
             if (size.entries > rasteriser_->entries(0).size())
                 COPPICE_CHECK(rasteriser_->grow(0, size.instances, size.entries));
@@ -204,7 +194,7 @@ TEST_P(ReferenceAgreement, PlantsAreAsLargeAndAsBrightAsTraced) {
     const auto device = gpu::Device::create(device_settings);
     ASSERT_TRUE(device) << to_string(device.error());
     const double color_bound = GetParam().color;
-    const auto plant = grow_and_cook(GetParam().name);
+    const auto plant = cook_species(GetParam().name);
     ASSERT_TRUE(plant) << to_string(plant.error());
     const auto drawer = Drawer::create(**device, *plant);
     ASSERT_TRUE(drawer) << to_string(drawer.error());

@@ -88,7 +88,7 @@ const std::vector<Bench>& benches() {
         {"frame", "what the CPU does for a frame of 100,000 plants: cull, levels, budget, work list",
          bench_frame},
         {"pines", "640 pines at 795x700, also with every triangle", bench_pines},
-        {"scale", "one view and budget over 10^7 to 10^12 triangles; a page. Makes 200 MiB of scenes", bench_scale},
+        {"scale", "one view and budget over 10^7 to 10^12 triangles; a page. Makes 250 MiB of scenes", bench_scale},
         {"scenes", "pines, palms, landscape and sunflowers at 795x700: rate, primitives, memory", bench_table},
         {"stand", "640, 5,000 and 50,000 trees, against other programs' times", bench_stand},
     };

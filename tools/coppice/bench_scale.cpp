@@ -93,7 +93,7 @@ std::string wood_text(const Size& size, const std::string& content) {
         scatter(R"({"shrub": 1})", 0.02, 2.0, 2), flight_text({}), light_text());
 }
 
-// Rows of a grid whose spacing is the same along both: one entry a row.
+// Its spacing differs along its sides, which a grid's does not: one entry a place.
 std::string mosaic_text(size_t index) {
     const Size& size = k_sizes[index];
     std::string places;

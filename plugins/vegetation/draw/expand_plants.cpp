@@ -30,14 +30,6 @@ void draw_plants(const SeenPlants& seen, const SceneGeometry& geometry, const Fr
               });
 }
 
-ExpandCounts expand_plants(const PlantRun& run, const SceneGeometry& geometry, const Frustum& frustum,
-                           const FrameSettings& settings, uint32_t rest_index, WorkPart& work) {
-    SeenPlants seen;
-    see_plants(run, geometry, frustum, settings, nullptr, 0.0f, seen);
-    draw_plants(seen, geometry, settings, rest_index, work);
-    return {uint32_t(seen.plants.size()), seen.full_triangles};
-}
-
 namespace {
 
 struct CloudView {

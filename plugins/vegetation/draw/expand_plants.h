@@ -7,18 +7,10 @@
 
 namespace coppice {
 
-struct ExpandCounts {
-    uint32_t plants_visible = 0;
-    uint64_t full_triangles = 0;
-};
-
 // The plants seen of one run, into one part of the work list. Any thread. rest_index: RestingFrame::index, which points
 // and lines.
 void draw_plants(const SeenPlants& seen, const SceneGeometry& geometry, const FrameSettings& settings,
                  uint32_t rest_index, WorkPart& work);
-// One run in one go, with what is behind the ground. Allocates.
-ExpandCounts expand_plants(const PlantRun& run, const SceneGeometry& geometry, const Frustum& frustum,
-                           const FrameSettings& settings, uint32_t rest_index, WorkPart& work);
 
 // What expand_clouds will draw.
 void measure_clouds(std::span<const CloudTile> tiles, const SceneGeometry& geometry, const Frustum& frustum,

@@ -1,0 +1,20 @@
+// Plants of one run, seen and drawn into a work list in one go, with what is behind the ground.
+#pragma once
+#include "plugins/vegetation/draw/expand_plants.h"
+
+namespace coppice {
+
+struct ExpandCounts {
+    uint32_t plants_visible = 0;
+    uint64_t full_triangles = 0;
+};
+
+inline ExpandCounts expand_run(const PlantRun& run, const SceneGeometry& geometry, const Frustum& frustum,
+                               const FrameSettings& settings, uint32_t rest_index, WorkPart& work) {
+    SeenPlants seen;
+    see_plants(run, geometry, frustum, settings, nullptr, 0.0f, seen);
+    draw_plants(seen, geometry, settings, rest_index, work);
+    return {uint32_t(seen.plants.size()), seen.full_triangles};
+}
+
+}  // namespace coppice

@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 #include <cstring>
 #include <functional>
+#include "plugins/vegetation/cook/coverage_raster.h"
+#include "plugins/vegetation/lod/leaf_lifetimes.h"
+#include "runtime/core/hash.h"
 #include "runtime/core/jobs.h"
 #include "tests/foliage/made_crown.h"
 
@@ -53,6 +56,52 @@ TEST(CollapseLeaves, EveryLevelHasTheCrownsAreaAndColor) {
     }
 }
 
+// Pixels covered from `count` directions, by the rules of the kernels.
+std::vector<double> covered_pixels(const std::vector<Leaf>& leaves, const Box& box, int count) {
+    constexpr float k_side_px = 700.0f;
+    const float scale = 0.8f * k_side_px / glm::length(box.size());
+    std::vector<double> covered;
+    Random random(77);
+    CoverageRaster raster{uint32_t(k_side_px)};
+    for (int i = 0; i < count; ++i) {
+        const vec3 d = any_direction(random), x = perpendicular_to(d), y = glm::cross(d, x);
+        raster.begin();
+        for (const Leaf& leaf : leaves) {
+            vec2 p[4];
+            for (size_t k = 0; k < 4; ++k) {
+                const vec3 away = (leaf.corners_plant[k] - box.center()) * scale;
+                p[k] = vec2(glm::dot(away, x), glm::dot(away, y)) + 0.5f * k_side_px;
+            }
+            raster.triangle(p[0], p[1], p[2]);
+            raster.triangle(p[0], p[2], p[3]);
+        }
+        covered.push_back(double(raster.covered()));
+    }
+    return covered;
+}
+
+TEST(CollapseLeaves, CoverageIsTheCrownsFromAllSidesDownToATwentieth) {
+    const std::vector<Leaf> crown = made_crown(40'000, 3);
+    const std::vector<LeafCollapse> collapses = collapse_leaves(crown, {});
+    const LeafLifetimes lifetimes = order_by_removal(uint32_t(crown.size()), collapses);
+    Box box;
+    for (const Leaf& leaf : crown)
+        for (vec3 corner : leaf.corners_plant) box.include(corner);
+    const std::vector<double> full = covered_pixels(crown, box, 16);
+    for (double share = 0.93; share >= 0.05; share *= 0.93) {
+        const uint32_t level = uint32_t((1.0 - share) * double(crown.size()));
+        std::vector<Leaf> leaves;
+        for (uint32_t leaf : lifetimes.candidates(level))
+            if (lifetimes.is_born(leaf, level))
+                leaves.push_back(leaf < crown.size() ? crown[leaf]
+                                                     : collapsed_leaf(crown, collapses[leaf - crown.size()]));
+        ASSERT_EQ(leaves.size(), crown.size() - level);
+        const std::vector<double> now = covered_pixels(leaves, box, 16);
+        for (size_t i = 0; i < full.size(); ++i)
+            EXPECT_NEAR(now[i] / full[i], 1.0, 0.02) << leaves.size() << " leaves, direction " << i;
+    }
+}
+
 TEST(CollapseLeaves, SameBytesOnAnyNumberOfThreads) {
     const std::vector<Leaf> crown = made_crown(2000, 2);
     const unsigned limit = thread_limit();
@@ -63,6 +112,8 @@ TEST(CollapseLeaves, SameBytesOnAnyNumberOfThreads) {
     set_thread_limit(limit);
     ASSERT_EQ(alone.size(), together.size());
     EXPECT_EQ(std::memcmp(alone.data(), together.data(), alone.size() * sizeof(LeafCollapse)), 0);
+    // The same from every compiler.
+    EXPECT_EQ(hash_to_hex(hash_bytes(alone.data(), alone.size() * sizeof(LeafCollapse))), "8a3f054032183c15");
 }
 
 TEST(CollapseLeaves, NeighborsAreJoinedFirst) {

@@ -4,6 +4,7 @@
 #include <queue>
 #include <tuple>
 #include "plugins/vegetation/cook/join_leaves.h"
+#include "plugins/vegetation/cook/steer_coverage.h"
 #include "plugins/vegetation/cook/nearest_leaves.h"
 #include "runtime/core/jobs.h"
 
@@ -21,11 +22,12 @@ class Collapser {
           nearest_(first_entries(crown), leaf_limit_),
           built_size_(uint32_t(crown.size())),
           pairs_(leaf_limit_),
-          gone_(leaf_limit_, false) {
+          gone_(leaf_limit_, false),
+          steering_(crown) {
         leaves_.reserve(leaf_limit_);
         raw_.reserve(leaf_limit_);
         for (uint32_t i = 0; i < crown.size(); ++i) {
-            leaves_.push_back(measure_leaf(crown[i], leaf_area_m2(crown[i])));
+            leaves_.push_back(measure_leaf(crown[i]));
             raw_.push_back({4 * i, 4 * i + 1, 4 * i + 2, 4 * i + 3});
         }
     }
@@ -49,6 +51,7 @@ class Collapser {
             }
             if (error_m > settings_.max_error_m) break;
             collapse(std::min(first, second), std::max(first, second), error_m);
+            if (steering_.is_due(nearest_.size())) steering_.steer(leaves_there());
         }
         return std::move(collapses_);
     }
@@ -69,8 +72,7 @@ class Collapser {
 
     static std::vector<NearestLeaves::Entry> first_entries(std::span<const Leaf> crown) {
         std::vector<NearestLeaves::Entry> entries;
-        for (uint32_t i = 0; i < crown.size(); ++i)
-            entries.push_back({measure_leaf(crown[i], 0.0).middle, i});
+        for (uint32_t i = 0; i < crown.size(); ++i) entries.push_back({measure_leaf(crown[i]).middle, i});
         return entries;
     }
 
@@ -90,6 +92,11 @@ class Collapser {
         if (pairs_[leaf].partner != k_none) queue_.push({pairs_[leaf].error_m, leaf, pairs_[leaf].partner});
     }
 
+    std::vector<Leaf> leaves_there() const {
+        std::vector<Leaf> there;
+        for (const NearestLeaves::Entry& e : nearest_.entries()) there.push_back(leaves_[e.leaf].leaf);
+        return there;
+    }
     std::array<vec3, 4> raw_corners(uint32_t leaf) const {
         std::array<vec3, 4> corners;
         for (size_t k = 0; k < 4; ++k)
@@ -100,7 +107,8 @@ class Collapser {
     void collapse(uint32_t first, uint32_t second, float error_m) {
         const MeasuredLeaf& a = leaves_[first];
         const MeasuredLeaf& b = leaves_[second];
-        const JoinedLeaf joined = join_leaves(a, b, raw_corners(first), raw_corners(second));
+        const JoinedLeaf joined =
+            join_leaves(a, b, raw_corners(first), raw_corners(second), steering_.wish());
         LeafCollapse made{{first, second}, {}, joined.growth, error_m, {}, {}};
         if (!collapses_.empty()) made.error_m = std::max(error_m, collapses_.back().error_m);
         for (size_t k = 0; k < 4; ++k)
@@ -114,7 +122,10 @@ class Collapser {
         collapses_.push_back(made);
 
         const uint32_t leaf = uint32_t(leaves_.size());
-        leaves_.push_back(measure_leaf(collapsed_leaf(crown_, made), area_m2));
+        MeasuredLeaf measured = measure_leaf(collapsed_leaf(crown_, made));
+        measured.area_m2 = area_m2;
+        for (size_t k = 0; k < 6; ++k) measured.spread[k] = a.spread[k] + b.spread[k];
+        leaves_.push_back(measured);
         raw_.push_back(made.corners);
         gone_[first] = gone_[second] = true;
         nearest_.remove(first);
@@ -144,6 +155,7 @@ class Collapser {
     std::priority_queue<Queued> queue_;
     std::vector<NearestLeaves::Neighbor> neighbors_;
     std::vector<LeafCollapse> collapses_;
+    CoverageSteering steering_;
 };
 
 }  // namespace

@@ -1,6 +1,7 @@
 // The quad that stands for two: of the quads between four of their eight corners the one most like them, grown to their area.
-// Source: ERRATA 8 (FSA). Deviates: that the area is near theirs is one of three things asked for, since what is left of it
-// is grown away; the others are that the quad lies in the middle of the two and faces as they do.
+// Source: ERRATA 8 (FSA). Deviates: a quad is asked for more than an area near theirs, since what is left of that is grown
+// away: to lie in the middle of the two, and with its two triangles to face as they do. Flat quads face one way and hide nothing of
+// themselves, so with the same area the crown would cover more and more; quads may be bent, and how much is wished for.
 #pragma once
 #include "plugins/vegetation/cook/leaf_error.h"
 
@@ -11,8 +12,14 @@ struct JoinedLeaf {
     float growth;                    // about the mean of the corners; 1 where they span no area
 };
 
-// raw_a, raw_b: the leaves' corners before growth, among which to choose. Not self-intersecting where any of the quads is.
+struct JoinWish {
+    float flatness = 0.85f;  // |sum of the triangles' area vectors| over their area; [0, 1]
+    NormalSpread lean{};     // to be added to how the two leaves' surface faces, over its area
+};
+
+// raw_a, raw_b: the leaves' corners before growth, among which to choose. Flat and with triangles that lie on each other
+// only where every quad is.
 JoinedLeaf join_leaves(const MeasuredLeaf& a, const MeasuredLeaf& b, const std::array<vec3, 4>& raw_a,
-                       const std::array<vec3, 4>& raw_b);
+                       const std::array<vec3, 4>& raw_b, const JoinWish& wish);
 
 }  // namespace coppice

@@ -44,13 +44,15 @@ float largest_of(vec3 v) { return std::max({std::fabs(v.x), std::fabs(v.y), std:
 
 }  // namespace
 
-MeasuredLeaf measure_leaf(const Leaf& leaf, double area_m2) {
-    MeasuredLeaf measured{leaf, area_m2, vec3(0), vec3(0), {}};
+MeasuredLeaf measure_leaf(const Leaf& leaf) {
+    MeasuredLeaf measured{leaf, leaf_area_m2(leaf), {}, vec3(0), vec3(0), {}};
     for (vec3 corner : leaf.corners_plant) {
         measured.middle += corner * 0.25f;
         measured.box.include(corner);
     }
     const auto& p = leaf.corners_plant;
+    for (vec3 n : {glm::cross(p[1] - p[0], p[2] - p[0]) * 0.5f, glm::cross(p[2] - p[0], p[3] - p[0]) * 0.5f})
+        add_spread(measured.spread, n, std::sqrt(glm::dot(n, n)));
     measured.facing = normalize_or(glm::cross(p[2] - p[0], p[3] - p[1]), leaf.normal_plant);
     return measured;
 }

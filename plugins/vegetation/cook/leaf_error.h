@@ -7,22 +7,32 @@
 
 namespace coppice {
 
+// Sum of area times n n^T over triangles, m2: xx yy zz xy xz yz. How a leaf's surface faces, whichever its front is.
+using NormalSpread = std::array<float, 6>;
+inline void add_spread(NormalSpread& spread, vec3 area_vector, float area_m2) {
+    if (!(area_m2 > 0.0f)) return;
+    const vec3 n = area_vector, u = area_vector * (1.0f / area_m2);
+    const float terms[6] = {n.x * u.x, n.y * u.y, n.z * u.z, n.x * u.y, n.x * u.z, n.y * u.z};
+    for (size_t k = 0; k < 6; ++k) spread[k] += terms[k];
+}
+
 // A leaf with what its comparisons need again and again.
 struct MeasuredLeaf {
     Leaf leaf;
     double area_m2;
-    vec3 middle;  // mean of the corners
-    vec3 facing;  // unit normal of the surface, whatever it is lit by
+    NormalSpread spread;  // of a leaf made: of all leaves of the crown it stands for
+    vec3 middle;          // mean of the corners
+    vec3 facing;          // unit normal of the surface, whatever it is lit by
     Box box;
 };
 
-MeasuredLeaf measure_leaf(const Leaf& leaf, double area_m2);
+MeasuredLeaf measure_leaf(const Leaf& leaf);
 
 // Two leaves side by side in one plane lose nothing by becoming one; one behind the other they hide each other, and joined
-// they would hide more of what is behind them: coverage grows. So planarity weighs more than distance.
+// they hide more of what is behind them.
 struct LeafErrorWeights {
-    float turn = 4.0f;   // of a right-angle turn, in sides of the square as large as both leaves; >= 0
-    float plane = 8.0f;  // of the distance of each from the other's plane; >= 0
+    float turn = 2.0f;   // of a right-angle turn, in sides of the square as large as both leaves; >= 0
+    float plane = 2.0f;  // of the distance of each from the other's plane; >= 0
 };
 
 // H(a, b) + turn sqrt(A_a + A_b) (1 - |n_a . n_b|) + plane (distances from the planes, mean), in metres; symmetric, >= 0.

@@ -1,7 +1,7 @@
 #include "plugins/terrain/build_patches.h"
 
 #include <algorithm>
-#include <array>
+#include <cassert>
 #include <utility>
 #include "runtime/core/hash.h"
 #include "runtime/core/jobs.h"
@@ -72,46 +72,79 @@ void find_least_heights(const HeightField& field, const Patch& patch, uint32_t s
         }
 }
 
-struct Writer {
+// A level's skirts, quad by quad: put(column, row) is on the ground, in samples of the level, and put(column, row, below_m,
+// outwards_m) hangs from there. Skirts lean outwards: one that hangs straight down shows its edge, and the crack, to who
+// looks along the border.
+template <class Put>
+void each_skirt_vertex(const LevelGrid& grid, Put&& put) {
+    auto hang = [&](uint32_t c0, uint32_t r0, uint32_t c1, uint32_t r1, vec2 outwards) {
+        const vec2 lean_m = outwards * (0.5f * grid.skirt_m);
+        put(c0, r0, 0.0f, vec2(0.0f));
+        put(c0, r0, grid.skirt_m, lean_m);
+        put(c1, r1, grid.skirt_m, lean_m);
+        put(c0, r0, 0.0f, vec2(0.0f));
+        put(c1, r1, grid.skirt_m, lean_m);
+        put(c1, r1, 0.0f, vec2(0.0f));
+    };
+    const uint32_t last_column = grid.across - 1, last_row = grid.down - 1;
+    for (uint32_t column = 0; column < last_column; ++column) hang(column + 1, 0, column, 0, vec2(0, -1));
+    for (uint32_t column = 0; column < last_column; ++column)
+        hang(column, last_row, column + 1, last_row, vec2(0, 1));
+    for (uint32_t row = 0; row < last_row; ++row) hang(0, row, 0, row + 1, vec2(-1, 0));
+    for (uint32_t row = 0; row < last_row; ++row) hang(last_column, row + 1, last_column, row, vec2(1, 0));
+}
+
+// Where a sample of a level lies.
+struct LevelPlaces {
     const HeightField& field;
-    PackedVertex* vertex;
-    uint32_t* sample;
-    void put(uint32_t column, uint32_t row, float below_m = 0.0f, vec2 outwards_m = vec2(0.0f)) {
-        *vertex++ = {field.x_of(column) + outwards_m.x, field.sample(column, row) - below_m,
-                     field.z_of(row) + outwards_m.y, 0};
-        *sample++ = row * field.columns + column;
+    const LevelGrid& grid;
+    vec3 operator()(uint32_t column, uint32_t row, float below_m = 0.0f, vec2 outwards_m = vec2(0.0f)) const {
+        const uint32_t c = grid.first_column + (column << grid.shift),
+                       r = grid.first_row + (row << grid.shift);
+        return {field.x_of(c) + outwards_m.x, field.sample(c, r) - below_m, field.z_of(r) + outwards_m.y};
     }
 };
 
-void write_level(const Patch& patch, uint32_t step, float skirt_m, Writer writer) {
-    uint32_t column_end = patch.column + patch.width, row_end = patch.row + patch.height;
-    for (uint32_t row = patch.row; row < row_end; row += step)
-        for (uint32_t column = patch.column; column < column_end; column += step) {
-            writer.put(column, row);
-            writer.put(column, row + step);
-            writer.put(column + step, row + step);
-            writer.put(column, row);
-            writer.put(column + step, row + step);
-            writer.put(column + step, row);
-        }
-    // Skirts lean outwards: one that hangs straight down shows its edge, and the crack, to who looks along the border.
-    auto hang = [&](uint32_t c0, uint32_t r0, uint32_t c1, uint32_t r1, vec2 outwards) {
-        vec2 lean_m = outwards * (0.5f * skirt_m);
-        writer.put(c0, r0);
-        writer.put(c0, r0, skirt_m, lean_m);
-        writer.put(c1, r1, skirt_m, lean_m);
-        writer.put(c0, r0);
-        writer.put(c1, r1, skirt_m, lean_m);
-        writer.put(c1, r1);
+Box bounds_of(const HeightField& field, std::span<const LevelGrid> levels) {
+    Box bounds;
+    for (const LevelGrid& grid : levels) {
+        const LevelPlaces place{field, grid};
+        // Coarser levels have no other samples.
+        if (grid.shift == 0)
+            for (uint32_t row = 0; row < grid.down; ++row)
+                for (uint32_t column = 0; column < grid.across; ++column) bounds.include(place(column, row));
+        each_skirt_vertex(grid, [&](auto... at) { bounds.include(place(at...)); });
+    }
+    return bounds;
+}
+
+void write_level(const HeightField& field, const LevelGrid& grid, const uint32_t* words,
+                 PackedVertex* vertex) {
+    const LevelPlaces place{field, grid};
+    auto put = [&](uint32_t column, uint32_t row, float below_m, vec2 outwards_m) {
+        const vec3 at = place(column, row, below_m, outwards_m);
+        *vertex++ = {at.x, at.y, at.z, words[row * grid.across + column]};
     };
-    for (uint32_t column = patch.column; column < column_end; column += step)
-        hang(column + step, patch.row, column, patch.row, vec2(0, -1));
-    for (uint32_t column = patch.column; column < column_end; column += step)
-        hang(column, row_end, column + step, row_end, vec2(0, 1));
-    for (uint32_t row = patch.row; row < row_end; row += step)
-        hang(patch.column, row, patch.column, row + step, vec2(-1, 0));
-    for (uint32_t row = patch.row; row < row_end; row += step)
-        hang(column_end, row + step, column_end, row, vec2(1, 0));
+    // Each corner is looked up once for the two rows of cells, not for the six triangles that meet in it.
+    std::vector<PackedVertex> north(grid.across), south(grid.across);
+    auto look_up = [&](uint32_t row, std::vector<PackedVertex>& corners) {
+        for (uint32_t column = 0; column < grid.across; ++column) {
+            const vec3 at = place(column, row);
+            corners[column] = {at.x, at.y, at.z, words[row * grid.across + column]};
+        }
+    };
+    look_up(0, south);
+    for (uint32_t row = 0; row + 1 < grid.down; ++row) {
+        std::swap(north, south);
+        look_up(row + 1, south);
+        for (uint32_t column = 0; column + 1 < grid.across; ++column, vertex += 6) {
+            vertex[0] = vertex[3] = north[column];
+            vertex[1] = south[column];
+            vertex[2] = vertex[4] = south[column + 1];
+            vertex[5] = north[column + 1];
+        }
+    }
+    each_skirt_vertex(grid, put);
 }
 
 // The mean over the samples a vertex of spacing `step` stands for: half way to its neighbours on each side.
@@ -178,6 +211,12 @@ vec3 nearest_color(vec3 wanted, vec3 color) {
 
 }  // namespace
 
+Box TerrainMesh::bounds() const {
+    Box bounds;
+    for (const TerrainPatch& patch : patches) bounds.include(patch.bounds_local);
+    return bounds;
+}
+
 TerrainMesh build_patches(const HeightField& field) {
     uint32_t cells_x = field.columns - 1, cells_z = field.rows - 1;
     uint32_t across = (cells_x + k_patch_cells - 1) / k_patch_cells;
@@ -185,7 +224,6 @@ TerrainMesh build_patches(const HeightField& field) {
     std::vector<Patch> cut(size_t(across) * down);
     TerrainMesh mesh;
     mesh.patches.resize(cut.size());
-    uint32_t vertex_count = 0;
     for (uint32_t j = 0; j < down; ++j)
         for (uint32_t i = 0; i < across; ++i) {
             Patch patch{i * k_patch_cells, j * k_patch_cells,
@@ -195,11 +233,13 @@ TerrainMesh build_patches(const HeightField& field) {
             out.first_level = uint32_t(mesh.levels.size());
             out.level_count = patch.levels();
             for (uint32_t level = 0; level < out.level_count; ++level) {
-                uint32_t count = level_vertices(patch, 1u << level);
-                mesh.levels.push_back({vertex_count, count, 6 * (patch.width >> level),
+                const uint32_t count = level_vertices(patch, 1u << level);
+                mesh.levels.push_back({mesh.vertex_count, count, 6 * (patch.width >> level),
                                        6 * (patch.height >> level), 0.0f});
-                mesh.vertex_level.push_back(uint8_t(level));
-                vertex_count += count;
+                mesh.grids.push_back({patch.column, patch.row, level, (patch.width >> level) + 1,
+                                      (patch.height >> level) + 1, mesh.word_count, 0.0f});
+                mesh.vertex_count += count;
+                mesh.word_count += mesh.grids.back().across * mesh.grids.back().down;
             }
             cut[j * across + i] = patch;
         }
@@ -218,8 +258,6 @@ TerrainMesh build_patches(const HeightField& field) {
     };
 
     mesh.least_heights.assign(mesh.levels.size() * k_blocks_across * k_blocks_across, -INFINITY);
-    mesh.vertices.resize(vertex_count);
-    mesh.vertex_samples.resize(vertex_count);
     parallel_for(cut.size(), 1, [&](size_t first, size_t last) {
         for (size_t p = first; p < last; ++p) {
             // Two surfaces that meet differ by no more than the sum of their errors; a little more hides what
@@ -235,74 +273,69 @@ TerrainMesh build_patches(const HeightField& field) {
                 beside = std::max(beside, worst(j + 1 < down ? p + across : i));
             TerrainPatch& out = mesh.patches[p];
             for (uint32_t level = 0; level < out.level_count; ++level) {
-                uint32_t index = out.first_level + level, step = 1u << level;
-                TerrainLevel& at = mesh.levels[index];
-                at.error_m =
+                const uint32_t index = out.first_level + level, step = 1u << level;
+                mesh.levels[index].error_m =
                     level == 0 ? 0.0f
                                : std::max(vertical[index], k_color_error_share * float(step) * field.cell_m);
                 find_least_heights(field, cut[p], step,
                                    &mesh.least_heights[index * k_blocks_across * k_blocks_across]);
-                float skirt_m = vertical[index] + beside + 0.05f * float(step) * field.cell_m;
-                write_level(cut[p], step, skirt_m,
-                            {field, &mesh.vertices[at.first_vertex], &mesh.vertex_samples[at.first_vertex]});
-                for (uint32_t v = at.first_vertex; v < at.first_vertex + at.vertex_count; ++v) {
-                    const PackedVertex& vertex = mesh.vertices[v];
-                    out.bounds_local.include(vec3(vertex.x_plant, vertex.y_plant, vertex.z_plant));
-                }
+                mesh.grids[index].skirt_m = vertical[index] + beside + 0.05f * float(step) * field.cell_m;
             }
+            out.bounds_local =
+                bounds_of(field, std::span(mesh.grids).subspan(out.first_level, out.level_count));
         }
     });
     return mesh;
 }
 
-void color_vertices(const HeightField& field, const GroundSurface& ground, TerrainMesh& mesh) {
-    parallel_for(mesh.patches.size(), 1, [&](size_t first, size_t last) {
-        std::vector<uint32_t> words;
+std::vector<PackedVertex> write_vertices(const HeightField& field, const TerrainMesh& mesh,
+                                         std::span<const uint32_t> words) {
+    assert(words.size() == mesh.word_count);
+    std::vector<PackedVertex> vertices(mesh.vertex_count);
+    parallel_for(mesh.levels.size(), 8, [&](size_t first, size_t last) {
+        for (size_t level = first; level < last; ++level)
+            write_level(field, mesh.grids[level], &words[mesh.grids[level].first_word],
+                        &vertices[mesh.levels[level].first_vertex]);
+    });
+    return vertices;
+}
+
+std::vector<uint32_t> color_levels(const HeightField& field, const GroundSurface& ground,
+                                   const TerrainMesh& mesh) {
+    std::vector<uint32_t> words(mesh.word_count);
+    parallel_for(mesh.grids.size(), 4, [&](size_t first, size_t last) {
         std::vector<vec3> owed;
-        for (size_t p = first; p < last; ++p) {
-            const TerrainPatch& patch = mesh.patches[p];
-            uint32_t corner = mesh.vertex_samples[mesh.levels[patch.first_level].first_vertex];
-            uint32_t column_first = corner % field.columns, row_first = corner / field.columns;
-            for (uint32_t index = patch.first_level; index < patch.first_level + patch.level_count; ++index) {
-                uint32_t shift = mesh.vertex_level[index];
-                uint32_t across = (std::min(k_patch_cells, field.columns - 1 - column_first) >> shift) + 1;
-                uint32_t down = (std::min(k_patch_cells, field.rows - 1 - row_first) >> shift) + 1;
-                words.resize(size_t(across) * down);
-                owed.assign(words.size() + across + 1, vec3(0.0f));
-                for (uint32_t row = 0; row < down; ++row)
-                    for (uint32_t column = 0; column < across; ++column) {
-                        size_t at = size_t(row) * across + column;
-                        uint32_t sample =
-                            ((row << shift) + row_first) * field.columns + (column << shift) + column_first;
-                        // The same dither wherever a sample is the same place.
-                        uint32_t place =
-                            uint32_t(field.wrapped_sample(sample % field.columns, sample / field.columns));
-                        Mean mean = mean_around(field, ground, sample, 1u << shift);
-                        // On the border nothing is owed: both patches there must come to the same colour.
-                        bool border = column == 0 || row == 0 || column + 1 == across || row + 1 == down;
-                        vec3 wanted = border ? mean.color : mean.color + owed[at],
-                             color = nearest_color(wanted, mean.color);
-                        vec3 rest = (wanted - color) * (1.0f / 16.0f);
-                        if (column + 1 < across) {
-                            owed[at + 1] += rest * 7.0f;
-                            owed[at + across + 1] += rest;
-                        }
-                        if (column > 0) owed[at + across - 1] += rest * 3.0f;
-                        owed[at + across] += rest * 5.0f;
-                        words[at] = encode_surface(
-                            {normalize_or(mean.normal, vec3(0, 1, 0)), color, mean.light, false},
-                            mix_bits(place + mix_bits(shift + 1u)));
+        for (size_t level = first; level < last; ++level) {
+            const auto& [first_column, first_row, shift, across, down, first_word, skirt_m] =
+                mesh.grids[level];
+            owed.assign(size_t(across) * down + across + 1, vec3(0.0f));
+            for (uint32_t row = 0; row < down; ++row)
+                for (uint32_t column = 0; column < across; ++column) {
+                    const size_t at = size_t(row) * across + column;
+                    const uint32_t sample =
+                        ((row << shift) + first_row) * field.columns + (column << shift) + first_column;
+                    // The same dither wherever a sample is the same place.
+                    const uint32_t place =
+                        uint32_t(field.wrapped_sample(sample % field.columns, sample / field.columns));
+                    const Mean mean = mean_around(field, ground, sample, 1u << shift);
+                    // On the border nothing is owed: both patches there must come to the same colour.
+                    const bool border = column == 0 || row == 0 || column + 1 == across || row + 1 == down;
+                    const vec3 wanted = border ? mean.color : mean.color + owed[at],
+                               color = nearest_color(wanted, mean.color);
+                    const vec3 rest = (wanted - color) * (1.0f / 16.0f);
+                    if (column + 1 < across) {
+                        owed[at + 1] += rest * 7.0f;
+                        owed[at + across + 1] += rest;
                     }
-                const TerrainLevel& level = mesh.levels[index];
-                for (uint32_t v = level.first_vertex; v < level.first_vertex + level.vertex_count; ++v) {
-                    uint32_t sample = mesh.vertex_samples[v];
-                    uint32_t row = (sample / field.columns - row_first) >> shift;
-                    mesh.vertices[v].surface =
-                        words[size_t(row) * across + ((sample % field.columns - column_first) >> shift)];
+                    if (column > 0) owed[at + across - 1] += rest * 3.0f;
+                    owed[at + across] += rest * 5.0f;
+                    words[first_word + at] =
+                        encode_surface({normalize_or(mean.normal, vec3(0, 1, 0)), color, mean.light, false},
+                                       mix_bits(place + mix_bits(shift + 1u)));
                 }
-            }
         }
     });
+    return words;
 }
 
 }  // namespace coppice

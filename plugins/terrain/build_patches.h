@@ -12,13 +12,23 @@ namespace coppice {
 // even flat ground must not lose it to a triangle of a hundred metres.
 inline constexpr float k_color_error_share = 1.0f / 10.0f;
 
+// The samples of the field that a level shows.
+struct LevelGrid {
+    uint32_t first_column, first_row;  // of its corner of least x and z
+    uint32_t shift;                    // log2 of its spacing in cells
+    uint32_t across, down;             // samples along x and z
+    uint32_t first_word;               // of the surface words, row by row
+    float skirt_m;                     // how deep its skirts hang
+};
+
+// All but what it looks like.
 struct TerrainMesh {
     std::vector<TerrainPatch> patches;
     std::vector<TerrainLevel> levels;
-    std::vector<float> least_heights;      // Terrain::least_heights
-    std::vector<PackedVertex> vertices;    // surface words are set by color_vertices
-    std::vector<uint32_t> vertex_samples;  // which sample of the field a vertex shows
-    std::vector<uint8_t> vertex_level;     // of each level's vertices, by level index: log2 of its spacing
+    std::vector<LevelGrid> grids;      // one a level
+    std::vector<float> least_heights;  // Terrain::least_heights
+    uint32_t vertex_count = 0, word_count = 0;
+    Box bounds() const;
 };
 
 // Levels halve as long as their spacing divides the patch: all of them but at the border of a field whose
@@ -32,8 +42,13 @@ struct GroundSurface {
     std::vector<float> light;         // [0, 1]: what is left of colour and openness after shading
 };
 
-// Sets the surface words. Coarser levels show the mean of the samples they stand for, so no level changes the
-// mean.
-void color_vertices(const HeightField& field, const GroundSurface& ground, TerrainMesh& mesh);
+// One surface word a sample of each level, where its grid says. Coarser levels show the mean of the samples they stand
+// for, so no level changes the mean.
+std::vector<uint32_t> color_levels(const HeightField& field, const GroundSurface& ground,
+                                   const TerrainMesh& mesh);
+
+// Those of all levels, where they say. Requires the words of all grids.
+std::vector<PackedVertex> write_vertices(const HeightField& field, const TerrainMesh& mesh,
+                                         std::span<const uint32_t> words);
 
 }  // namespace coppice

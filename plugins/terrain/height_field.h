@@ -53,7 +53,9 @@ void repeat_border(const HeightField& field, std::vector<Value>& values) {
     for (uint32_t column = 0; column < field.columns; ++column) repeat(column, field.rows - 1);
 }
 
-// One normal a sample, from central differences; across the border where the field is periodic. Unit.
+// Of a sample, from central differences; across the border where the field is periodic. Unit.
+vec3 normal_of(const HeightField& field, uint32_t column, uint32_t row);
+// One normal a sample.
 std::vector<vec3> make_normals(const HeightField& field);
 
 }  // namespace coppice

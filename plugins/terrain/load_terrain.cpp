@@ -1,111 +1,16 @@
 #include "plugins/terrain/load_terrain.h"
 
-#include <algorithm>
 #include <filesystem>
-#include <mutex>
 #include <fmt/format.h>
-#include "plugins/terrain/build_patches.h"
-#include "plugins/terrain/color_ground.h"
-#include "plugins/terrain/grow_heights.h"
 #include "plugins/shared/json_object.h"
 #include "plugins/shared/noise.h"
+#include "plugins/terrain/field_terrain.h"
+#include "plugins/terrain/grow_heights.h"
 #include "plugins/terrain/read_heights.h"
+#include "runtime/core/hash.h"
 
 namespace coppice {
 namespace {
-
-class LoadedTerrain final : public Terrain {
-  public:
-    // light: as Terrain::light, or empty where nothing shades the ground yet.
-    LoadedTerrain(HeightField field, const GroundSettings& settings, std::vector<float> light,
-                  dvec3 origin_world)
-        : field_(std::move(field)), origin_world_(origin_world), mesh_(build_patches(field_)) {
-        ground_.normals = make_normals(field_);
-        ground_.colors_linear = color_ground(field_, ground_.normals, settings, origin_world_);
-        ground_.light = std::move(light);
-        ground_.light.resize(field_.heights_m.size(), 1.0f);
-        for (const TerrainPatch& patch : mesh_.patches) bounds_local_.include(patch.bounds_local);
-    }
-
-    dvec3 origin_world() const override { return origin_world_; }
-    Box bounds_local() const override { return bounds_local_; }
-    float height_at(float x_local, float z_local) const override {
-        return field_.height_at(x_local, z_local);
-    }
-    vec3 normal_at(float x_local, float z_local) const override {
-        auto [column, row, u, v] = field_.place_at(x_local, z_local);
-        const vec3* normal = &ground_.normals[size_t(row) * field_.columns + column];
-        vec3 north = normal[0] + (normal[1] - normal[0]) * u;
-        vec3 south = normal[field_.columns] + (normal[field_.columns + 1] - normal[field_.columns]) * u;
-        return normalize_or(north + (south - north) * v, vec3(0, 1, 0));
-    }
-    std::span<const TerrainPatch> patches() const override { return mesh_.patches; }
-    std::span<const TerrainLevel> levels() const override { return mesh_.levels; }
-    std::span<const PackedVertex> vertices() const override {
-        std::lock_guard lock(mutex_);
-        if (!colored_) color_vertices(field_, ground_, mesh_);
-        colored_ = true;
-        return mesh_.vertices;
-    }
-    void shade(float x_local, float z_local, float radius_m, float amount) override;
-    TerrainLayout layout() const override {
-        return {vec2(field_.x_of(0), field_.z_of(0)), field_.cell_m, field_.columns - 1, field_.rows - 1};
-    }
-    std::span<const float> least_heights() const override { return mesh_.least_heights; }
-    std::span<const float> light() const override { return ground_.light; }
-
-  private:
-    HeightField field_;
-    dvec3 origin_world_;
-    GroundSurface ground_;
-    Box bounds_local_;
-    mutable std::mutex mutex_;
-    mutable TerrainMesh mesh_;  // its surface words are made when first asked for, after all shading
-    mutable bool colored_ = false;
-};
-
-void LoadedTerrain::shade(float x_local, float z_local, float radius_m, float amount) {
-    if (!(radius_m > 0.0f) || !std::isfinite(x_local) || !std::isfinite(z_local)) return;
-    constexpr float k_darkest = 0.18f;  // under any number of crowns
-    amount = amount > 0.0f ? std::min(amount, 1.0f) : 0.0f;
-    // What is smaller than a cell darkens the nearest samples in proportion to its area.
-    float reach_m = std::min(std::max(radius_m, field_.cell_m * 1.25f), 1000.0f);
-    amount *= std::min(1.0f, (radius_m / reach_m) * (radius_m / reach_m));
-    float column_mid = x_local / field_.cell_m + float(field_.columns - 1) * 0.5f;
-    float row_mid = z_local / field_.cell_m + float(field_.rows - 1) * 0.5f;
-    float reach = reach_m / field_.cell_m;
-    auto first = [](float at) { return at > 0.0f ? int64_t(std::min(at, 1e6f)) + 1 : int64_t(0); };
-    auto last = [](float at, uint32_t count) {
-        return at < 0.0f ? -1 : int64_t(std::min(at, float(count - 1)));
-    };
-    int64_t column_first = first(column_mid - reach), column_last = last(column_mid + reach, field_.columns);
-    int64_t row_first = first(row_mid - reach), row_last = last(row_mid + reach, field_.rows);
-    if (field_.periodic) {  // the shade goes on beyond the border
-        auto middle = [](float at, uint32_t count) {
-            at = std::fmod(at, float(count - 1));
-            return at < 0.0f ? at + float(count - 1) : at;
-        };
-        column_mid = middle(column_mid, field_.columns);
-        row_mid = middle(row_mid, field_.rows);
-        reach = std::min(reach, 0.49f * float(std::min(field_.columns, field_.rows) - 1));
-        column_first = int64_t(std::floor(column_mid - reach)) + 1;
-        column_last = int64_t(std::floor(column_mid + reach));
-        row_first = int64_t(std::floor(row_mid - reach)) + 1;
-        row_last = int64_t(std::floor(row_mid + reach));
-    }
-    std::lock_guard lock(mutex_);
-    for (int64_t row = row_first; row <= row_last; ++row)
-        for (int64_t column = column_first; column <= column_last; ++column) {
-            float dx = float(column) - column_mid, dz = float(row) - row_mid;
-            float away = std::sqrt(dx * dx + dz * dz) / reach;
-            float& light = ground_.light[field_.wrapped_sample(column, row)];
-            light = std::max(k_darkest, light * (1.0f - amount * (1.0f - smooth_step(0.35f, 1.0f, away))));
-        }
-    if (column_first <= 0 || row_first <= 0 || column_last + 1 >= field_.columns ||
-        row_last + 1 >= field_.rows)
-        repeat_border(field_, ground_.light);
-    colored_ = false;
-}
 
 bool check_cells(JsonObject& object, float size_m, float cell_m) {
     double cells = double(size_m) / double(cell_m) + k_patch_cells;
@@ -185,7 +90,7 @@ HeightField read_procedural(JsonObject object) {
     return grow_heights(s);
 }
 
-GroundSettings read_ground(JsonObject object) {
+GroundSettings read_ground_settings(JsonObject object) {
     GroundSettings ground;
     ground.meadow = object.color("meadow", 1.0f, ground.meadow);
     ground.dry = object.color("dry", 1.0f, ground.dry);
@@ -248,17 +153,18 @@ Status check_paint(const GroundSettings& ground, const HeightField& field, dvec2
     return {};
 }
 
-Result<std::vector<float>> read_light(const std::string& path, const HeightField& field) {
-    COPPICE_TRY(HeightField light, read_heights(path, {}));
-    if (light.columns != field.columns || light.rows != field.rows)
-        return fail(ErrorId::value_out_of_range, path, "header",
-                    fmt::format("{} x {} samples of light", light.columns, light.rows),
-                    fmt::format("the ground's {} x {}", field.columns, field.rows));
-    if (std::any_of(light.heights_m.begin(), light.heights_m.end(),
-                    [](float v) { return !(v >= 0.0f && v <= 1.0f); }))
-        return fail(ErrorId::value_out_of_range, path, "", "light that is not in [0, 1]",
-                    "1: nothing shades it");
-    return std::move(light.heights_m);
+Result<std::shared_ptr<Terrain>> load_packed(JsonObject object, const std::string& base_dir,
+                                             dvec3 origin_world) {
+    const std::string name = object.text("file");
+    const std::string content = object.text("content");
+    object.close();
+    COPPICE_CHECK(object.document().status());
+    const std::string path = (std::filesystem::path(base_dir) / name).lexically_normal().string();
+    COPPICE_TRY(PackedGround packed, read_ground(path));
+    if (hash_to_hex(packed.content_hash) != content)
+        return fail(ErrorId::file_corrupt, path, "head", "not the ground the scene was populated with",
+                    "populate the scene again");
+    return std::make_shared<FieldTerrain>(std::move(packed), origin_world);
 }
 
 }  // namespace
@@ -269,12 +175,14 @@ Result<std::shared_ptr<Terrain>> load_terrain(std::string_view json, const std::
     JsonObject object(document, document.root(), "terrain");
     auto center =
         object.numbers("center", 3, -k_farthest_m, k_farthest_m, std::vector<double>{0.0, 0.0, 0.0});
+    const dvec3 origin_world(center[0], center[1], center[2]);
+    const size_t kind = object.one_of({"flat", "heights", "procedural", "packed"});
+    const bool packed = kind == 3;
     GroundSettings ground;
-    if (object.has("ground")) ground = read_ground(object.object("ground"));
-    const std::string light_file = object.text("light", "");
-    size_t kind = object.one_of({"flat", "heights", "procedural"});
+    if (!packed && object.has("ground")) ground = read_ground_settings(object.object("ground"));
     object.close();
     COPPICE_CHECK(document.status());
+    if (packed) return load_packed(object.object("packed"), base_dir, origin_world);
 
     HeightField field;
     if (kind == 1) {
@@ -286,14 +194,7 @@ Result<std::shared_ptr<Terrain>> load_terrain(std::string_view json, const std::
     if (field.periodic) {
         COPPICE_CHECK(check_paint(ground, field, dvec2(center[0], center[2]), file));
     }
-    std::vector<float> light;
-    if (!light_file.empty()) {
-        COPPICE_TRY(
-            light,
-            read_light((std::filesystem::path(base_dir) / light_file).lexically_normal().string(), field));
-    }
-    return std::make_shared<LoadedTerrain>(std::move(field), ground, std::move(light),
-                                           dvec3(center[0], center[1], center[2]));
+    return std::make_shared<FieldTerrain>(std::move(field), std::move(ground), origin_world);
 }
 
 }  // namespace coppice

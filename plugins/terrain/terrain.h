@@ -2,6 +2,7 @@
 // corner of least x and z to that of greatest; level 0 draws exactly these, and height_at samples them: what
 // is drawn is stood upon.
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -48,6 +49,12 @@ struct TerrainPatch {
     uint32_t first_level, level_count;  // into Terrain::levels
 };
 
+// A file from which the same ground is loaded, as "packed", at little cost: its heights and its look.
+struct PackedTerrain {
+    std::vector<std::byte> bytes;  // none: the ground cannot be packed
+    uint64_t content_hash = 0;
+};
+
 class Terrain {
   public:
     virtual ~Terrain() = default;
@@ -60,20 +67,19 @@ class Terrain {
     virtual std::span<const TerrainLevel> levels() const = 0;
     virtual std::span<const PackedVertex> vertices() const = 0;  // positions local
     // Multiplies the ground's colour around a point, for what shades it; call before vertices() is used.
-    // amount in [0, 1]; falls off smoothly to nothing at radius_m.
+    // amount in [0, 1]; falls off smoothly to nothing at radius_m. A packed ground stays as it is.
     virtual void shade(float x_local, float z_local, float radius_m, float amount) = 0;
     // What the ground hides can be told only where these two are known.
     virtual TerrainLayout layout() const { return {}; }
     // Of each level k_blocks_across^2 blocks, row by row: the least height of its drawn surface, skirts left out;
     // -infinity where a narrow patch has no block.
     virtual std::span<const float> least_heights() const { return {}; }
-    // What is left of the light on the ground after all shading, [0, 1], one a sample of the field, row by row from its
-    // corner of least x and z: to be kept and given back as "light", where what shaded it is not at hand.
-    virtual std::span<const float> light() const { return {}; }
+    // After all shading.
+    virtual PackedTerrain pack() const { return {}; }
 };
 
 inline constexpr const char* k_terrain_interface = "coppice.terrain";
-inline constexpr uint32_t k_terrain_version = 4;
+inline constexpr uint32_t k_terrain_version = 5;
 
 struct TerrainInterface {
     uint32_t size_bytes;

@@ -15,16 +15,18 @@ namespace {
 class FieldTerrain final : public Terrain {
   public:
     explicit FieldTerrain(HeightField field, dvec3 origin_world = dvec3(0.0))
-        : field_(std::move(field)), mesh_(build_patches(field_)), origin_world_(origin_world) {
-        for (const TerrainPatch& patch : mesh_.patches) bounds_.include(patch.bounds_local);
-    }
+        : field_(std::move(field)),
+          mesh_(build_patches(field_)),
+          vertices_(write_vertices(field_, mesh_, std::vector<uint32_t>(mesh_.word_count))),
+          bounds_(mesh_.bounds()),
+          origin_world_(origin_world) {}
     dvec3 origin_world() const override { return origin_world_; }
     Box bounds_local() const override { return bounds_; }
     float height_at(float x, float z) const override { return field_.height_at(x, z); }
     vec3 normal_at(float, float) const override { return vec3(0, 1, 0); }
     std::span<const TerrainPatch> patches() const override { return mesh_.patches; }
     std::span<const TerrainLevel> levels() const override { return mesh_.levels; }
-    std::span<const PackedVertex> vertices() const override { return mesh_.vertices; }
+    std::span<const PackedVertex> vertices() const override { return vertices_; }
     void shade(float, float, float, float) override {}
     TerrainLayout layout() const override {
         return {vec2(field_.x_of(0), field_.z_of(0)), field_.cell_m, field_.columns - 1, field_.rows - 1};
@@ -35,6 +37,7 @@ class FieldTerrain final : public Terrain {
   private:
     HeightField field_;
     TerrainMesh mesh_;
+    std::vector<PackedVertex> vertices_;
     Box bounds_;
     dvec3 origin_world_;
 };

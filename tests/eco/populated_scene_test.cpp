@@ -92,8 +92,12 @@ TEST_F(PopulatedScenes, OpenTheirOwnPacksAndNoOthers) {
 TEST_F(PopulatedScenes, AreReadStrictly) {
     using nlohmann::json;
     EXPECT_EQ(load("{}").error().id, ErrorId::format_unknown);
-    EXPECT_EQ(load("{\"populated\": 1").error().id, ErrorId::syntax);
-    EXPECT_EQ(error_after([](json& j) { j["populated"] = 2; }).place, "populated");
+    EXPECT_EQ(load("{\"populated\": 2").error().id, ErrorId::syntax);
+    const Error older = error_after([](json& j) { j["populated"] = 1; });
+    EXPECT_EQ(older.id, ErrorId::format_unknown);
+    EXPECT_EQ(older.place, "populated");
+    EXPECT_NE(older.remedy.find("populate the scene again"), std::string::npos) << older.remedy;
+    EXPECT_EQ(error_after([](json& j) { j["populated"] = "2"; }).place, "populated");
     EXPECT_EQ(error_after([](json& j) { j["lihgt"] = 2; }).id, ErrorId::name_unknown);
     EXPECT_EQ(error_after([](json& j) { j.erase("light"); }).place, "light");
     EXPECT_EQ(error_after([](json& j) { j["packs"][0]["content"] = "12"; }).place, "packs[0].content");

@@ -29,6 +29,8 @@ TEST(BuildPatches, LeastHeightsAreThoseOfEachLevelsSurface) {
         for (uint32_t i = 0; i < columns * rows; ++i)
             field.heights_m.push_back(random.next_in(-20.0f, 30.0f));
         const TerrainMesh mesh = build_patches(field);
+        const std::vector<PackedVertex> vertices =
+            write_vertices(field, mesh, std::vector<uint32_t>(mesh.word_count));
         ASSERT_EQ(mesh.least_heights.size(), mesh.levels.size() * k_blocks_across * k_blocks_across);
         const uint32_t across = (columns - 1 + k_patch_cells - 1) / k_patch_cells;
         for (uint32_t p = 0; p < mesh.patches.size(); ++p) {
@@ -43,7 +45,7 @@ TEST(BuildPatches, LeastHeightsAreThoseOfEachLevelsSurface) {
                 for (uint32_t v = 0; v < surface; v += 3) {
                     vec3 t[3];
                     for (uint32_t c = 0; c < 3; ++c)
-                        t[c] = position(mesh.vertices[mesh.levels[index].first_vertex + v + c]);
+                        t[c] = position(vertices[mesh.levels[index].first_vertex + v + c]);
                     // Cells of the patch that the triangle's square has.
                     auto cell_at = [&](float at, float first) {
                         return uint32_t((at - first) / field.cell_m + 0.5f);

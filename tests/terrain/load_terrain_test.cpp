@@ -262,40 +262,17 @@ TEST(LoadTerrain, ShadingDarkensAroundOnly) {
     EXPECT_FALSE(shaded->vertices().empty());
 }
 
-TEST(LoadTerrain, LightThatWasKeptShadesAsTheShadingDid) {
-    auto shaded = load(k_hills);
-    shaded->shade(20.0f, -10.0f, 9.0f, 0.6f);
-    shaded->shade(-30.0f, 40.0f, 20.0f, 1.0f);
-    const TerrainLayout layout = shaded->layout();
-    const uint32_t columns = layout.cells_x + 1, rows = layout.cells_z + 1;
-    ASSERT_EQ(shaded->light().size(), size_t(columns) * rows);
-    auto picture = [&](float first) {
-        std::vector<float> light(shaded->light().begin(), shaded->light().end());
-        light[0] = first;
-        std::string text = fmt::format("Pf\n{} {}\n-1.0\n", columns, rows);
-        for (uint32_t row = rows; row-- > 0;)
-            text.append(reinterpret_cast<const char*>(light.data() + size_t(row) * columns), 4 * columns);
-        return text;
-    };
-    auto json = [](const TemporaryFile& file) {
-        const std::string name = file.path().substr(testing::TempDir().size());
-        return fmt::format(R"({}, "light": "{}"}})",
-                           std::string_view(k_hills).substr(0, std::strlen(k_hills) - 1), name);
-    };
-    TemporaryFile file("light.pfm", picture(shaded->light()[0]));
-    auto again = load(json(file), testing::TempDir());
-    ASSERT_EQ(again->vertices().size(), shaded->vertices().size());
+TEST(LoadTerrain, AShadeMayComeAfterTheVertices) {
+    auto at_once = load(k_hills), later = load(k_hills);
+    at_once->shade(20.0f, -10.0f, 9.0f, 0.6f);
+    EXPECT_NE(
+        std::memcmp(later->vertices().data(), at_once->vertices().data(), at_once->vertices().size_bytes()),
+        0);
+    later->shade(20.0f, -10.0f, 9.0f, 0.6f);
+    ASSERT_EQ(later->vertices().size(), at_once->vertices().size());
     EXPECT_EQ(
-        std::memcmp(again->vertices().data(), shaded->vertices().data(), shaded->vertices().size_bytes()), 0);
-    EXPECT_NE(std::memcmp(again->vertices().data(), load(k_hills)->vertices().data(),
-                          shaded->vertices().size_bytes()),
-              0);
-
-    TemporaryFile bright("bright.pfm", picture(1.5f)),
-        other("other.pfm", "Pf 2 2 -1\n" + std::string(16, '\0'));
-    EXPECT_EQ(fault_of(json(bright), testing::TempDir()).id, ErrorId::value_out_of_range);
-    EXPECT_EQ(fault_of(json(other), testing::TempDir()).id, ErrorId::value_out_of_range);
-    EXPECT_EQ(fault_of(R"({"flat": {}, "light": "nowhere.pfm"})").id, ErrorId::file_missing);
+        std::memcmp(later->vertices().data(), at_once->vertices().data(), at_once->vertices().size_bytes()),
+        0);
 }
 
 TEST(LoadTerrain, FlatIsFlatAndPaintShows) {
@@ -434,6 +411,9 @@ TEST(LoadTerrain, EveryBadDescriptionOnce) {
              {R"({"flat": {}, "ground": {"paint": [{}]}})", ErrorId::syntax,
               "terrain.ground.paint[0].region"},
              {R"({"heights": {}})", ErrorId::syntax, "terrain.heights.file"},
+             {R"({"packed": {"file": "a.ground"}})", ErrorId::syntax, "terrain.packed.content"},
+             {R"({"packed": {"file": "a.ground", "content": ""}, "ground": {}})", ErrorId::name_unknown,
+              "terrain"},
          }) {
         Error fault = fault_of(bad.json);
         EXPECT_EQ(fault.id, bad.id) << bad.json << ": " << to_string(fault);

@@ -323,3 +323,52 @@ TEST_F(Bundle, APlantAloneIsBundledCookedOrNot) {
     }
     EXPECT_EQ(pictures[0], pictures[1]);
 }
+
+TEST_F(Bundle, APopulatedSceneIsDrawnElsewhereAsHere) {
+    const std::string populated = folder + "/author/a populated meadow";
+    ASSERT_EQ(run_coppice({"populate", scene, "-o", populated, "--cache", folder + "/cache"}).exit_code, 0);
+    fs::remove_all(folder + "/cache");
+    const ProgramResult made = run_coppice(words(folder, populated));
+    ASSERT_EQ(made.exit_code, 0) << made.err;
+    EXPECT_NE(made.out.find("populated scene"), std::string::npos) << made.out;
+    EXPECT_FALSE(fs::exists(folder + "/cache")) << "nothing had to be cooked";
+    ASSERT_EQ(run_coppice({"play", populated, "--headless", "1280x720", "--out", folder + "/here",
+                           "--wait-for-tiles"})
+                  .exit_code,
+              0);
+    fs::remove_all(folder + "/author");
+
+    const ScriptResult run = run_bundle(bundle, "./run play --headless 1280x720 --out out --wait-for-tiles");
+    ASSERT_EQ(run.exit_code, 0) << run.output;
+    const json here = json::parse(read_file(folder + "/here/summary.json")),
+               there = json::parse(read_file(bundle + "/out/summary.json"));
+    ASSERT_GT(here["pictures"].size(), 1u);
+    ASSERT_EQ(here["pictures"].size(), there["pictures"].size());
+    for (size_t i = 0; i < here["pictures"].size(); ++i)
+        EXPECT_EQ(here["pictures"][i]["hash"], there["pictures"][i]["hash"]);
+    EXPECT_NE(here["pictures"][0]["hash"], here["pictures"].back()["hash"]) << "the camera moves";
+    EXPECT_EQ(figure(there, "plants")["value"], 5);
+    // Also as the script has it.
+    const ScriptResult flown = run_bundle(bundle, "./run"), measured = run_bundle(bundle, "./run bench");
+    EXPECT_EQ(flown.exit_code, 0) << flown.output;
+    EXPECT_EQ(measured.exit_code, 0) << measured.output;
+    EXPECT_TRUE(fs::exists(bundle + "/out/bench/summary.json"));
+}
+
+TEST_F(Bundle, APopulatedSceneThatIsBrokenOrOverAStatedLimitIsRefused) {
+    const std::string populated = folder + "/author/populated";
+    ASSERT_EQ(run_coppice({"populate", scene, "-o", populated, "--cache", folder + "/cache"}).exit_code, 0);
+    expect_failure(run_coppice(words(folder, populated, {"--limit-mib", "1"})), 1, "--limit-mib");
+    EXPECT_FALSE(fs::exists(bundle));
+    std::string pack;
+    for (const auto& entry : fs::recursive_directory_iterator(populated))
+        if (entry.path().extension() == ".tiles") pack = entry.path().string();
+    std::string bytes = read_file(pack);
+    bytes[bytes.size() - 70] ^= 1;
+    write(pack, bytes);
+    expect_failure(run_coppice(words(folder, populated)), 2, pack.substr(pack.rfind('/')));
+    fs::remove(pack);
+    expect_failure(run_coppice(words(folder, populated + "/scene.json")), 2, pack.substr(pack.rfind('/')));
+    expect_failure(run_coppice(words(folder, folder + "/author/species")), 2, "scene.json");
+    EXPECT_FALSE(fs::exists(bundle));
+}

@@ -20,15 +20,6 @@ Result<uint64_t> hash_file(const std::string& path) {
     return hash_bytes(file.bytes().data(), file.bytes().size());
 }
 
-// The scene.json of a folder that `coppice populate` made, for its path or the folder's; else empty.
-std::string populated_scene_file(const std::string& path) {
-    constexpr const char* k_name = "scene.json";
-    std::error_code error;
-    const std::filesystem::path given(path);
-    if (std::filesystem::is_directory(given, error)) return (given / k_name).string();
-    return given.filename() == k_name ? path : "";
-}
-
 std::string cache_dir_of(const PlayOptions& options) {
     return options.cache_dir.empty() ? default_cache_dir() : options.cache_dir;
 }
@@ -98,16 +89,9 @@ Status PlayHost::load_forest_file(const PlayOptions& options) {
 
 Result<std::vector<Plant>> PlayHost::load_forest_plants() {
     Stopwatch clock;
-    std::vector<Plant> plants;
-    for (size_t m = 0; m < scene.models.size(); ++m) {
-        const std::string& file = scene.models[m].source_path;
-        COPPICE_TRY(Plant plant, load_plant(file));
-        if (plant.content_hash != forest_->model_content_hashes[m])
-            return fail(ErrorId::file_corrupt, file, "", "not the plant that the scene was populated with",
-                        "populate the scene again");
-        hashes.emplace_back("plant " + scene.models[m].name, plant.content_hash);
-        plants.push_back(std::move(plant));
-    }
+    COPPICE_TRY(std::vector<Plant> plants, coppice::load_plants(*forest_));
+    for (size_t m = 0; m < plants.size(); ++m)
+        hashes.emplace_back("plant " + scene.models[m].name, plants[m].content_hash);
     load.plants_ms = clock.ms();
     return plants;
 }

@@ -115,29 +115,7 @@ Result<Outcome> write_if_different(const std::string& path, std::span<const std:
     return Outcome::made;
 }
 
-// Puts a file that belongs to the ground into our folder; its name there.
-Result<std::string> put_beside(const Pieces& pieces, const fs::path& name, std::span<const std::byte> bytes) {
-    const std::string hashed =
-        fmt::format("terrain/{}-{}{}", name.stem().string(),
-                    hash_to_hex(hash_bytes(bytes.data(), bytes.size())), name.extension().string());
-    COPPICE_CHECK(write_if_different(path_of(pieces, hashed), bytes));
-    return hashed;
-}
-
-// The light that all plants leave on the ground, as a Pf picture, whose rows go from the bottom.
-std::string picture_of_light(const Terrain& terrain) {
-    const TerrainLayout layout = terrain.layout();
-    const size_t columns = layout.cells_x + 1, rows = layout.cells_z + 1;
-    const auto light = std::as_bytes(terrain.light());
-    std::string picture = fmt::format("Pf\n{} {}\n-1.0\n", columns, rows);
-    for (size_t row = rows; row-- > 0;)
-        picture.append(reinterpret_cast<const char*>(light.data()) + row * columns * sizeof(float),
-                       columns * sizeof(float));
-    return picture;
-}
-
-// The terrain as it is read from our folder: with the file of its heights, and shaded by all plants, which a player that
-// streams them never has at once.
+// The ground as a player reads it: packed, and shaded by all plants, which a player that streams them never has at once.
 Result<std::string> bring_terrain(const Pieces& pieces, std::span<const Plant> plants) {
     if (pieces.terrain_json.empty()) return std::string();
     const fs::path folder = fs::path(pieces.settings.scene).parent_path();
@@ -146,16 +124,14 @@ Result<std::string> bring_terrain(const Pieces& pieces, std::span<const Plant> p
     std::vector<Box> bounds;
     for (const Plant& plant : plants) bounds.push_back(plant.bounds_plant);
     shade_ground(pieces.scene, *terrain, bounds);
-
-    nlohmann::json json = nlohmann::json::parse(pieces.terrain_json);
-    const nlohmann::json::json_pointer heights("/heights/file");
-    if (json.contains(heights)) {
-        const fs::path source = folder / json[heights].get<std::string>();
-        COPPICE_TRY(const MappedFile file, MappedFile::open(source.lexically_normal().string()));
-        COPPICE_TRY(json[heights], put_beside(pieces, source.filename(), file.bytes()));
-    }
-    const std::string picture = picture_of_light(*terrain);
-    COPPICE_TRY(json["light"], put_beside(pieces, "light.pfm", std::as_bytes(std::span(picture))));
+    const PackedTerrain packed = terrain->pack();
+    const std::string stem = fs::path(pieces.settings.scene).stem().stem().string();
+    const std::string hash = hash_to_hex(packed.content_hash);
+    const std::string name = fmt::format("terrain/{}-{}.ground", stem, hash);
+    COPPICE_CHECK(write_if_different(path_of(pieces, name), packed.bytes));
+    const dvec3 center = terrain->origin_world();
+    const nlohmann::json json = {{"packed", {{"file", name}, {"content", hash}}},
+                                 {"center", {center.x, center.y, center.z}}};
     return json.dump();
 }
 

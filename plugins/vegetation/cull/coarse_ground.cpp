@@ -1,7 +1,10 @@
 #include "plugins/vegetation/cull/coarse_ground.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <mutex>
+#include "runtime/core/jobs.h"
 
 namespace coppice {
 namespace {
@@ -63,6 +66,28 @@ vec3 normal_of(const Grid& grid, uint32_t i, uint32_t j) {
     return normalize_or(glm::cross(along_z, along_x), vec3(0.0f, 1.0f, 0.0f));
 }
 
+// Largest vertical distances of the grids to the terrain's samples, which are many: each is asked for once.
+std::array<float, k_coarse_ground_levels> find_errors(const Terrain& terrain,
+                                                      const std::array<Grid, k_coarse_ground_levels>& grids) {
+    const TerrainLayout layout = terrain.layout();
+    std::array<float, k_coarse_ground_levels> errors_m{};
+    std::mutex mutex;
+    parallel_for(layout.cells_z + 1, 16, [&](size_t first, size_t last) {
+        std::array<float, k_coarse_ground_levels> some_m{};
+        for (size_t j = first; j < last; ++j)
+            for (uint32_t i = 0; i <= layout.cells_x; ++i) {
+                const float x = layout.corner_local.x + float(i) * layout.cell_m;
+                const float z = layout.corner_local.y + float(j) * layout.cell_m;
+                const float height_m = terrain.height_at(x, z);
+                for (size_t l = 0; l < grids.size(); ++l)
+                    some_m[l] = std::max(some_m[l], std::fabs(height_m - grids[l].height(x, z)));
+            }
+        std::lock_guard lock(mutex);
+        for (size_t l = 0; l < grids.size(); ++l) errors_m[l] = std::max(errors_m[l], some_m[l]);
+    });
+    return errors_m;
+}
+
 void write_level(const Grid& grid, dvec3 origin, float skirt_m, CoarseGround& ground) {
     auto corner = [&](uint32_t i, uint32_t j, float below_m) {
         const vec3 at = vec3(origin) + grid.at(i, j);
@@ -92,8 +117,9 @@ CoarseGround make_coarse_ground(const Terrain& terrain) {
     CoarseGround ground;
     const TerrainLayout layout = terrain.layout();
     if (layout.cells_x == 0 || layout.cells_z == 0) return ground;
+    std::array<Grid, k_coarse_ground_levels> grids;
     for (uint32_t l = 0; l < k_coarse_ground_levels; ++l) {
-        Grid grid;
+        Grid& grid = grids[l];
         grid.cells = 1u << l;
         grid.corner = layout.corner_local;
         grid.step_m =
@@ -104,17 +130,13 @@ CoarseGround make_coarse_ground(const Terrain& terrain) {
                                                          grid.corner.y + grid.step_m.y * float(j)));
         grid.colors_linear.resize(grid.heights.size());
         gather_colors(terrain, grid);
-        float error_m = 0.0f;
-        for (uint32_t j = 0; j <= layout.cells_z; ++j)
-            for (uint32_t i = 0; i <= layout.cells_x; ++i) {
-                const float x = layout.corner_local.x + float(i) * layout.cell_m;
-                const float z = layout.corner_local.y + float(j) * layout.cell_m;
-                error_m = std::max(error_m, std::fabs(terrain.height_at(x, z) - grid.height(x, z)));
-            }
+    }
+    const std::array<float, k_coarse_ground_levels> errors_m = find_errors(terrain, grids);
+    for (uint32_t l = 0; l < k_coarse_ground_levels; ++l) {
         const uint32_t first = uint32_t(ground.vertices.size());
         // A neighbour may be off by as much the other way.
-        write_level(grid, terrain.origin_world(), 2.0f * error_m + 0.1f * layout.cell_m, ground);
-        ground.levels.push_back({first, uint32_t(ground.vertices.size()) - first, error_m});
+        write_level(grids[l], terrain.origin_world(), 2.0f * errors_m[l] + 0.1f * layout.cell_m, ground);
+        ground.levels.push_back({first, uint32_t(ground.vertices.size()) - first, errors_m[l]});
     }
     return ground;
 }

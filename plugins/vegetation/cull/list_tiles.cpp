@@ -8,8 +8,10 @@ namespace {
 
 // What will be needed soon comes behind what is needed now.
 constexpr float k_soon_share = 0.25f;
+constexpr float k_widest_spread_px = 32.0f;  // splat_points.comp
 
 float distance_m(const Box& box, vec3 from) { return glm::length(glm::clamp(from, box.min, box.max) - from); }
+float farthest_m(const Box& box) { return glm::length(glm::max(glm::abs(box.min), glm::abs(box.max))); }
 
 }  // namespace
 
@@ -21,46 +23,76 @@ TileList::Pending TileList::arrive(Pending at) const {
     return at;
 }
 
-TileList::SeenTile TileList::see(const Tile& tile, const Pending& at, const Frustum& frustum,
-                                 const Settings& settings) const {
+bool TileList::lacks_detail(const TileLevels& levels, const Pending& at) const {
+    if (levels.child_count == 0) return levels.is_streamed && plants_of_row_[at.row].positions.empty();
+    for (uint32_t i = 0; i < levels.child_count; ++i) {
+        Pending child = at;
+        child.row = levels.first_child + i;
+        if (levels_of_row_[arrive(child).row].cloud == TileLevels::k_none) return true;
+    }
+    return false;
+}
+
+// What is drawn of a tile from memory says how far beside the tile it can be seen: were a stand-in left out sooner, its
+// larger points would vanish in full view.
+TileList::SeenTile TileList::see(const Pending& at, const Frustum& frustum, const Settings& settings) const {
+    const Tile& tile = tile_of_row_[at.row];
+    const TileLevels& levels = levels_of_row_[at.row];
     SeenTile seen;
     seen.origin_camera = vec3(tile.origin_world + at.space_camera);
     seen.bounds_camera = {tile.bounds_tile.min + seen.origin_camera,
                           tile.bounds_tile.max + seen.origin_camera};
+    seen.nearest_m = distance_m(seen.bounds_camera, vec3(0.0f));
+    const vec3 center = seen.bounds_camera.center();
+    // What is nearest asks for most.
+    const float focal_px = frustum.focal_px * off_axis_stretch(frustum, center, glm::length(center));
+    const float most_px = focal_px / std::max(seen.nearest_m, frustum.near_m);
+    auto density_at = [&](float per_meter_px) {
+        const float per_meter = per_meter_px / settings.sample_distance_px;
+        return settings.sample_distance_px > 0.0f ? per_meter * per_meter : INFINITY;
+    };
+    const float soon_m = std::min(seen.nearest_m, distance_m(seen.bounds_camera, settings.motion_m));
+    seen.density = density_at(most_px);
+    seen.density_soon = density_at(focal_px / std::max(soon_m, frustum.near_m));
+
+    seen.stand_in_spread_px = settings.spread_px;
+    if (levels.cloud == TileLevels::k_none) {
+        seen.stand_in_spread_px = at.stand_in_spread_px;
+    } else if (seen.density > levels.finest_density && lacks_detail(levels, at)) {
+        const float sample_distance_px = most_px / std::sqrt(std::max(levels.finest_density, 1e-12f));
+        seen.stand_in_spread_px = std::max(
+            settings.spread_px, std::min(settings.stand_in_spread * sample_distance_px, k_widest_spread_px));
+    }
     seen.inside = at.inside;
     seen.outside = false;
     if (!at.inside) {
         const Visibility visibility = see_box(frustum, seen.bounds_camera);
         seen.outside = visibility == Visibility::outside;
         seen.inside = visibility == Visibility::inside;
+        if (seen.outside && seen.stand_in_spread_px > settings.spread_px) {
+            const float beside_m =
+                seen.stand_in_spread_px / frustum.focal_px * farthest_m(seen.bounds_camera);
+            seen.outside = see_box(frustum, {seen.bounds_camera.min - beside_m,
+                                             seen.bounds_camera.max + beside_m}) == Visibility::outside;
+        }
     }
-    seen.hidden =
-        !seen.outside && settings.horizon && settings.horizon->hidden(seen.bounds_camera, settings.spread_px);
-    seen.nearest_m = distance_m(seen.bounds_camera, vec3(0.0f));
-    const vec3 center = seen.bounds_camera.center();
-    // What is nearest asks for most.
-    const float focal_px = frustum.focal_px * off_axis_stretch(frustum, center, glm::length(center));
-    auto density_at = [&](float nearest_m) {
-        const float most_px = focal_px / std::max(nearest_m, frustum.near_m);
-        return most_px / settings.sample_distance_px * (most_px / settings.sample_distance_px);
-    };
-    const float soon_m = std::min(seen.nearest_m, distance_m(seen.bounds_camera, settings.motion_m));
-    seen.density = settings.sample_distance_px > 0.0f ? density_at(seen.nearest_m) : INFINITY;
-    seen.density_soon = settings.sample_distance_px > 0.0f ? density_at(soon_m) : INFINITY;
+    seen.hidden = !seen.outside && settings.horizon &&
+                  settings.horizon->hidden(seen.bounds_camera, seen.stand_in_spread_px);
     const float size_px =
         glm::length(tile.bounds_tile.size()) * frustum.focal_px / std::max(soon_m, frustum.near_m);
     seen.priority = std::min(size_px * size_px, 1e30f) * (at.soon ? k_soon_share : 1.0f);
     return seen;
 }
 
-bool TileList::all_children_drawable(const TileLevels& levels, const Pending& at, const Frustum& frustum,
-                                     const Settings& settings) const {
+bool TileList::all_children_drawable(const TileLevels& levels, const Pending& at, float stand_in_spread_px,
+                                     const Frustum& frustum, const Settings& settings) const {
     for (uint32_t i = 0; i < levels.child_count; ++i) {
         Pending child = at;
         child.row = levels.first_child + i;
+        child.stand_in_spread_px = stand_in_spread_px;
         child = arrive(child);
         if (levels_of_row_[child.row].cloud != TileLevels::k_none) continue;
-        const SeenTile seen = see(tile_of_row_[child.row], child, frustum, settings);
+        const SeenTile seen = see(child, frustum, settings);
         if (!seen.outside && !seen.hidden) return false;
     }
     return true;
@@ -71,7 +103,7 @@ void TileList::visit(Pending at, const Frustum& frustum, const Settings& setting
     ++touched_tile_count;
     const Tile& tile = tile_of_row_[at.row];
     const TileLevels& levels = levels_of_row_[at.row];
-    const SeenTile seen = see(tile, at, frustum, settings);
+    const SeenTile seen = see(at, frustum, settings);
     hidden_tile_count += seen.hidden;
     if (seen.outside || seen.hidden) return;
     if (levels.is_streamed) wishes_.push_back({at.row, TileBlockKind::cloud, seen.priority});
@@ -86,11 +118,12 @@ void TileList::visit(Pending at, const Frustum& frustum, const Settings& setting
             expanded_.push_back({seen.nearest_m, at.row, seen.inside, seen.origin_camera,
                                  settings.horizon && settings.horizon->hides_some(seen.bounds_camera)});
     } else if (refines_soon) {
-        refined = at.drawn && !suffices && all_children_drawable(levels, at, frustum, settings);
+        refined = at.drawn && !suffices &&
+                  all_children_drawable(levels, at, seen.stand_in_spread_px, frustum, settings);
         // All that is missing on the way down is wished for at once.
         for (uint32_t i = 0; i < levels.child_count; ++i)
-            pending_.push_back(
-                {levels.first_child + i, seen.inside, refined, at.soon || suffices, at.space_camera});
+            pending_.push_back({levels.first_child + i, seen.inside, refined, at.soon || suffices,
+                                at.space_camera, seen.stand_in_spread_px});
     }
     if (refined || !at.drawn || levels.cloud == TileLevels::k_none) return;
     stand_in_count += !suffices && (levels.child_count > 0 || levels.is_streamed);
@@ -129,7 +162,7 @@ void TileList::list(const Tiles& tiles, const Plants& plants, const Frustum& fru
     plant_count = tile_of_row_[0].plant_count;
     collect_plants(plants);
 
-    pending_.assign(1, {0, false, true, false, -camera_world});
+    pending_.assign(1, {0, false, true, false, -camera_world, settings.spread_px});
     while (!pending_.empty()) {
         const Pending at = pending_.back();
         pending_.pop_back();

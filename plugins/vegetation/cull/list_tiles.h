@@ -51,6 +51,9 @@ class TileList {
         vec3 motion_m{0.0f};
         const Horizon* horizon = nullptr;  // what it hides is left out, and not wished for
         float spread_px = 0.0f;            // how far beside their geometry primitives cover pixels
+        // Likewise, over their d' and times the root of c_p, of the larger points with which a cloud stands in for what is not
+        // in memory yet.
+        float stand_in_spread = 0.0f;
     };
     // Order: by distance of the tile's bounds, then by row. Requires a finite camera.
     void list(const Tiles& tiles, const Plants& plants, const Frustum& frustum, dvec3 camera_world,
@@ -86,20 +89,25 @@ class TileList {
         bool drawn;          // not only wished for
         bool soon;           // will be needed, but is not yet
         dvec3 space_camera;  // where the scene of the row has its origin, from the viewer
+        // Of the points that stand for it while it has no cloud: those of the tile above.
+        float stand_in_spread_px;
     };
     struct SeenTile {
         vec3 origin_camera;
         Box bounds_camera;
+        float stand_in_spread_px;  // of its cloud, where that stands in for what is below
         float nearest_m;
         float density, density_soon;  // that its nearest place asks for, now and where the viewer will be
         float priority;
         bool outside, inside, hidden;
     };
-    SeenTile see(const Tile& tile, const Pending& at, const Frustum& frustum, const Settings& settings) const;
+    SeenTile see(const Pending& at, const Frustum& frustum, const Settings& settings) const;
+    // Whether what refines its cloud lacks in memory.
+    bool lacks_detail(const TileLevels& levels, const Pending& at) const;
     // Follows places down to what stands there.
     Pending arrive(Pending at) const;
-    bool all_children_drawable(const TileLevels& levels, const Pending& at, const Frustum& frustum,
-                               const Settings& settings) const;
+    bool all_children_drawable(const TileLevels& levels, const Pending& at, float stand_in_spread_px,
+                               const Frustum& frustum, const Settings& settings) const;
     void collect_plants(const Plants& plants);
     void visit(Pending at, const Frustum& frustum, const Settings& settings);
     void make_runs();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <filesystem>
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include "plugins/shared/json_object.h"
 #include "plugins/vegetation/eco/mosaic.h"
@@ -14,7 +15,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr uint64_t k_format = 1;
+constexpr uint64_t k_format = 2;
 constexpr const char* k_remedy = "populate the scene again";
 constexpr uint64_t k_most_count = uint64_t(1) << 53;  // what JSON numbers hold
 
@@ -97,6 +98,14 @@ void read_packs(JsonObject& root, const std::filesystem::path& folder, Populated
 
 }  // namespace
 
+std::string populated_scene_file(const std::string& path) {
+    constexpr const char* k_name = "scene.json";
+    std::error_code error;
+    const std::filesystem::path given(path);
+    if (std::filesystem::is_directory(given, error)) return (given / k_name).string();
+    return given.filename() == k_name ? path : "";
+}
+
 std::string write_populated_scene(const PopulatedScene& populated) {
     const Scene& scene = populated.scene;
     assert(populated.model_content_hashes.size() == scene.models.size());
@@ -134,7 +143,10 @@ Result<PopulatedScene> load_populated_scene(const std::string& path, const Terra
     if (!root.has("populated"))
         return fail(ErrorId::format_unknown, path, "", "not a populated scene",
                     "name the scene.json of a folder that coppice populate made");
-    root.whole("populated", k_format, k_format);
+    if (const uint64_t format = root.whole("populated", 1, k_most_count);
+        document.sound() && format != k_format)
+        return fail(ErrorId::format_unknown, path, "populated", fmt::format("version {}", format),
+                    fmt::format("this program reads version {}; {}", k_format, k_remedy));
     PopulatedScene populated;
     populated.content_hash = hash_text(text);
     Scene& scene = populated.scene;

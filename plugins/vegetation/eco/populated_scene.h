@@ -27,6 +27,9 @@ struct PopulatedScene {
     uint64_t content_hash = 0;  // of the text it was read from
 };
 
+// The scene.json of a folder that `coppice populate` made, for its path or the folder's; else empty.
+std::string populated_scene_file(const std::string& path);
+
 // Paths as they are. Same scene, same text. Requires a terrain_json that was read before.
 std::string write_populated_scene(const PopulatedScene& populated);
 

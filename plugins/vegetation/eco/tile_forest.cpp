@@ -409,6 +409,19 @@ Result<TileForest> load_forest(const std::string& path, const TerrainInterface* 
     return make_forest(root, terrain);
 }
 
+Result<std::vector<Plant>> load_plants(const TileForest& forest) {
+    std::vector<Plant> plants;
+    for (size_t m = 0; m < forest.models.size(); ++m) {
+        const std::string& file = forest.models[m].source_path;
+        COPPICE_TRY(Plant plant, load_plant(file));
+        if (plant.content_hash != forest.model_content_hashes[m])
+            return fail(ErrorId::file_corrupt, file, "", "not the plant that the scene was populated with",
+                        "populate the scene again");
+        plants.push_back(std::move(plant));
+    }
+    return plants;
+}
+
 double ground_height(const TileForest& forest, double x_world, double z_world) {
     if (forest.rows.empty() || forest.rows[0].ground == k_no_row) return 0.0;
     const ForestRow* row = &forest.rows[0];

@@ -67,6 +67,9 @@ Result<TileForest> load_forest(const std::string& path, const TerrainInterface* 
 // The same of a root that may not have been written yet.
 Result<TileForest> make_forest(const PopulatedScene& root, const TerrainInterface* terrain);
 
+// Those of all models, in their order. Errors: load_plant's; file_corrupt for one that is not what a scene was populated with.
+Result<std::vector<Plant>> load_plants(const TileForest& forest);
+
 // Of the ground below (x, z), or where there is none of the nearest; 0 in a forest without grounds.
 double ground_height(const TileForest& forest, double x_world, double z_world);
 

@@ -5,6 +5,7 @@
 #include <tuple>
 #include "plugins/vegetation/cook/join_leaves.h"
 #include "plugins/vegetation/cook/steer_coverage.h"
+#include "plugins/vegetation/cook/keep_light.h"
 #include "plugins/vegetation/cook/nearest_leaves.h"
 #include "runtime/core/jobs.h"
 
@@ -115,9 +116,7 @@ class Collapser {
             made.corners[k] = raw_[joined.corners[k] < 4 ? first : second][joined.corners[k] % 4];
         const double area_m2 = a.area_m2 + b.area_m2;
         const float share = area_m2 > 0.0 ? float(a.area_m2 / area_m2) : 0.5f;
-        // Leaves are lit from both sides: of two that face apart one is turned.
-        const vec3 n = a.leaf.normal_plant, m = b.leaf.normal_plant;
-        made.normal_plant = normalize_or(n * share + (glm::dot(n, m) < 0.0f ? -m : m) * (1.0f - share), n);
+        made.normal_plant = light_.choose_normal(a, b);
         made.color_linear = a.leaf.color_linear * share + b.leaf.color_linear * (1.0f - share);
         collapses_.push_back(made);
 
@@ -156,6 +155,7 @@ class Collapser {
     std::vector<NearestLeaves::Neighbor> neighbors_;
     std::vector<LeafCollapse> collapses_;
     CoverageSteering steering_;
+    LightKeeper light_;
 };
 
 }  // namespace

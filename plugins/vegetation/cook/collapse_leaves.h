@@ -13,7 +13,7 @@ struct LeafCollapseSettings {
     uint32_t target_count = 1;     // leaves to keep; 0 is 1
     float max_error_m = INFINITY;  // of one collapse
     LeafErrorWeights weights;
-    uint32_t neighbor_count = 16;  // each leaf is compared with so many nearest ones; >= 1
+    uint32_t neighbor_count = 10;  // each leaf is compared with so many nearest ones; >= 1
 };
 
 // Collapse i makes leaf (leaf_count + i). Any prefix is a level of detail. Greedy: at each step the least error between

@@ -96,6 +96,31 @@ TEST(FindLeaves, AnyMeshGetsAProxyOfItsAreaMiddleNormalAndColor) {
     }
 }
 
+TEST(FindLeaves, ABentLeafsProxyIsBentAsItIs) {
+    for (float rise : {-0.05f, 0.05f}) {
+        PartDescription part;  // two wings of four triangles each, 45 degrees from the middle plane
+        for (int i = 0; i < 2; ++i) {
+            const vec3 along(0.2f, 0, 0), start(0.2f * float(i), 0, 0);
+            shapes::add_quad(part, start, along, vec3(0, rise, -0.05f));
+            shapes::add_quad(part, start + vec3(0, rise, 0.05f), along, vec3(0, -rise, -0.05f));
+        }
+        const FoundLeaves found = find(part);
+        ASSERT_EQ(found.counts.meshes, 1u);
+        const Leaf& leaf = found.leaves[0];
+        const auto& p = leaf.corners_plant;
+        EXPECT_NEAR(leaf_area_m2(leaf) / measure_area_and_color(part).first, 1.0, 1e-4);
+        EXPECT_GT(std::fabs(facing_of(leaf).y), 0.9999f);
+        const vec3 n0 = normalize_or(glm::cross(p[1] - p[0], p[2] - p[0]), vec3(0));
+        const vec3 n1 = normalize_or(glm::cross(p[2] - p[0], p[3] - p[0]), vec3(0));
+        EXPECT_NEAR(std::fabs(n0.y), std::sqrt(0.5f), 1e-3f);
+        EXPECT_NEAR(glm::dot(n0, n1), 0.0f, 1e-3f);
+        EXPECT_NEAR(std::fabs(n0.x), 0.0f, 1e-3f);
+        // Its wings are where the leaf's are.
+        EXPECT_GT((p[1].y - p[0].y) * rise, 0.0f);
+        EXPECT_NEAR((p[0].y + p[1].y + p[2].y) / 3.0f, 0.5f * rise, 1e-4f);
+    }
+}
+
 TEST(FindLeaves, WhatTheAuthorToldApartStaysApart) {
     PartDescription part;  // two quads with a corner in common
     shapes::add_quad(part, vec3(0), vec3(0.1f, 0, 0), vec3(0, 0, 0.1f));

@@ -57,8 +57,38 @@ std::optional<Corners> joined_triangles(const LeafMesh& mesh, const std::vector<
     return std::nullopt;
 }
 
+// How far the surface turns from its mean normal to both sides of a line through its middle.
+struct Bend {
+    double sine = 0.0;    // of the mean turn
+    double droops = 1.0;  // -1: the sides rise towards the normal
+};
+
+// side: unit, at right angles to the line.
+Bend find_bend(const LeafMesh& mesh, dvec3 middle, dvec3 side) {
+    double square = 0.0, outwards = 0.0, weight = 0.0;
+    for (uint32_t t : mesh.triangles) {
+        const dvec3 n = mesh.area_vector(t);
+        const double area = std::sqrt(glm::dot(n, n)), turned = glm::dot(n, side);
+        const dvec3 away =
+            (dvec3(mesh.place(t, 0)) + dvec3(mesh.place(t, 1)) + dvec3(mesh.place(t, 2))) * (1.0 / 3.0) -
+            middle;
+        square += turned * turned / area;
+        outwards += turned * glm::dot(away, side);
+        weight += area;
+    }
+    return {std::min(std::sqrt(square / weight), 0.95), outwards < 0.0 ? -1.0 : 1.0};
+}
+
+// Folded along its first half diagonal; area and the middle of the surface stay.
+Corners folded_rhombus(dvec3 middle, dvec3 fold, dvec3 wing, dvec3 normal, Bend bend) {
+    const double fall_m = bend.droops * bend.sine * std::sqrt(glm::dot(wing, wing));
+    const dvec3 ridge = middle + normal * (fall_m / 3.0), low = ridge - normal * fall_m;
+    const dvec3 reach = wing * std::sqrt(1.0 - bend.sine * bend.sine);
+    return {vec3(ridge - fold), vec3(low - reach), vec3(ridge + fold), vec3(low + reach)};
+}
+
 // Axes of the surface's spread in the plane of `normal`; a rhombus of half diagonals a, b spreads by a^2 / 6 and b^2 / 6.
-Corners rhombus(const LeafMesh& mesh, double area_m2, dvec3 normal) {
+Corners rhombus(const LeafMesh& mesh, double area_m2, dvec3 normal, bool closed) {
     double weight = 0.0;
     dvec3 middle(0);
     for (uint32_t t : mesh.triangles) {
@@ -95,8 +125,11 @@ Corners rhombus(const LeafMesh& mesh, double area_m2, dvec3 normal) {
     // A sliver, whose short axis is lost in rounding, still gets its area.
     const double ratio = std::clamp(short_deviation / std::max(long_deviation, 1e-30), 1e-3, 1.0);
     const double a = std::sqrt(area_m2 / (2.0 * ratio)), b = a * ratio;
-    return {vec3(middle - along * a), vec3(middle - across * b), vec3(middle + along * a),
-            vec3(middle + across * b)};
+    if (closed) return folded_rhombus(middle, along * a, across * b, normal, {});
+    const Bend lengthwise = find_bend(mesh, middle, along), crosswise = find_bend(mesh, middle, across);
+    if (lengthwise.sine <= crosswise.sine)
+        return folded_rhombus(middle, along * a, across * b, normal, crosswise);
+    return folded_rhombus(middle, across * -b, along * a, normal, lengthwise);
 }
 
 }  // namespace
@@ -131,7 +164,7 @@ ProxyQuad fit_proxy_quad(const PartDescription& part, const std::vector<uint32_t
     std::optional<Corners> corners;
     if (triangles.size() == 1) corners = halved_triangle(mesh);
     if (triangles.size() == 2) corners = joined_triangles(mesh, welded);
-    leaf.corners_plant = corners ? *corners : rhombus(mesh, closed ? 0.5 * area_m2 : area_m2, facing);
+    leaf.corners_plant = corners ? *corners : rhombus(mesh, closed ? 0.5 * area_m2 : area_m2, facing, closed);
     return {leaf, corners.has_value()};
 }
 

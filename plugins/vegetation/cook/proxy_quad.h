@@ -1,6 +1,7 @@
 // One quad for a leaf of any small mesh. A leaf of two triangles with a common edge is a quad as it stands, and one of a
 // single triangle becomes one by a fourth corner on its longest edge: neither changes. Any other becomes a rhombus that
-// keeps area, middle, normal and, in their ratio, the spread along and across it; a rhombus, because leaves have a tip.
+// keeps area, middle, normal and, in their ratio, the spread along and across it; a rhombus, because leaves have a tip. It is
+// folded along or across as much as the leaf is bent that way: flat, it would cover more.
 // Ours: FSA (Remolar et al. 2002) knows quads only.
 #pragma once
 #include <span>

@@ -139,6 +139,9 @@ class CountingTerrain final : public Terrain {
     std::span<const TerrainPatch> patches() const override { return {}; }
     std::span<const TerrainLevel> levels() const override { return {}; }
     std::span<const PackedVertex> vertices() const override { return {}; }
+    uint32_t vertex_count() const override { return 0; }
+    void write_vertices(std::span<PackedVertex>) const override {}
+    void write_level(uint32_t, std::span<PackedVertex>) const override {}
     void shade(float x, float z, float radius_m, float amount) override {
         calls.push_back({x, z, radius_m, amount});
     }

@@ -1,6 +1,7 @@
 // Scenes of so few triangles that their pictures are known.
 #pragma once
 #include <gtest/gtest.h>
+#include <algorithm>
 #include <array>
 #include <vector>
 #include "tools/reference/light.h"
@@ -27,6 +28,11 @@ class FlatGround : public Terrain {
     std::span<const TerrainPatch> patches() const override { return patches_; }
     std::span<const TerrainLevel> levels() const override { return levels_; }
     std::span<const PackedVertex> vertices() const override { return vertices_; }
+    uint32_t vertex_count() const override { return uint32_t(vertices_.size()); }
+    void write_vertices(std::span<PackedVertex> all) const override {
+        std::copy(vertices_.begin(), vertices_.end(), all.begin());
+    }
+    void write_level(uint32_t, std::span<PackedVertex> of_level) const override { write_vertices(of_level); }
     void shade(float, float, float, float) override {}
 
   private:

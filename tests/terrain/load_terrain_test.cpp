@@ -262,6 +262,24 @@ TEST(LoadTerrain, ShadingDarkensAroundOnly) {
     EXPECT_FALSE(shaded->vertices().empty());
 }
 
+<<<<<<< HEAD
+TEST(LoadTerrain, VerticesAreWrittenAsTheyAreKept) {
+    auto terrain = load(k_hills);
+    std::vector<PackedVertex> all(terrain->vertex_count());
+    terrain->write_vertices(all);
+    const auto kept = terrain->vertices();
+    ASSERT_EQ(kept.size(), all.size());
+    EXPECT_EQ(std::memcmp(kept.data(), all.data(), kept.size_bytes()), 0);
+    for (uint32_t l = 0; l < terrain->levels().size(); ++l) {
+        const TerrainLevel& level = terrain->levels()[l];
+        std::vector<PackedVertex> one(level.vertex_count);
+        terrain->write_level(l, one);
+        ASSERT_EQ(std::memcmp(&kept[level.first_vertex], one.data(), one.size() * sizeof one[0]), 0) << l;
+    }
+}
+
+=======
+>>>>>>> 99f8da08582d947845ea3bc126b9347369e3a8dd
 TEST(LoadTerrain, AShadeMayComeAfterTheVertices) {
     auto at_once = load(k_hills), later = load(k_hills);
     at_once->shade(20.0f, -10.0f, 9.0f, 0.6f);

@@ -222,6 +222,38 @@ TEST_F(Populate, NinjaMakesTheSameAndKnowsWhenNothingIsToBeDone) {
     EXPECT_NE(ninja().find("no work to do"), std::string::npos);
 }
 
+TEST_F(Populate, ABrokenGroundIsRefusedAndMadeAgain) {
+    ASSERT_EQ(populate(out_).exit_code, 0);
+    const Files sound = contents(out_);
+    std::string ground;
+    for (const std::string& name : names(sound))
+        if (name.ends_with(".ground")) ground = name;
+    ASSERT_TRUE(ground.starts_with("terrain/it's a meadow-")) << testing::PrintToString(names(sound));
+    std::string flipped = sound.at(ground);
+    flipped[flipped.size() / 2] ^= 16;
+    for (const std::string& broken : {flipped, sound.at(ground).substr(0, 100), std::string()}) {
+        write(out_ + "/" + ground, broken);
+        const ProgramResult played = run_coppice({"play", out_, "--headless", "32x32"});
+        EXPECT_EQ(played.exit_code, 2);
+        EXPECT_NE(played.err.find(ground), std::string::npos) << played.err;
+        ASSERT_EQ(populate(out_).exit_code, 0);
+        EXPECT_EQ(contents(out_), sound);
+    }
+}
+
+TEST_F(Populate, AFolderOfAnotherVersionIsRefusedAndMadeAgain) {
+    ASSERT_EQ(populate(out_).exit_code, 0);
+    const Files sound = contents(out_);
+    std::string older = sound.at("scene.json");
+    older.replace(older.find("\"populated\": 2"), 14, "\"populated\": 1");
+    write(out_ + "/scene.json", older);
+    const ProgramResult played = run_coppice({"play", out_, "--headless", "32x32"});
+    EXPECT_EQ(played.exit_code, 2);
+    EXPECT_NE(played.err.find("populate the scene again"), std::string::npos) << played.err;
+    ASSERT_EQ(populate(out_).exit_code, 0);
+    EXPECT_EQ(contents(out_), sound);
+}
+
 TEST_F(Populate, AFullDiskLeavesOldFilesAndSaysSo) {
     ASSERT_EQ(populate(out_).exit_code, 0);
     const Files before = contents(out_);

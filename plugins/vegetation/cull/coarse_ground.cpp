@@ -38,11 +38,13 @@ void gather_colors(const Terrain& terrain, Grid& grid) {
     std::vector<uint32_t> counts(grid.heights.size(), 0);
     dvec3 all(0.0);
     uint32_t all_count = 0;
+    std::vector<PackedVertex> vertices;
     for (const TerrainPatch& patch : terrain.patches()) {
         if (patch.level_count == 0) continue;
         const TerrainLevel& level = terrain.levels()[patch.first_level + patch.level_count - 1];
-        for (const PackedVertex& vertex :
-             terrain.vertices().subspan(level.first_vertex, level.vertex_count)) {
+        vertices.resize(level.vertex_count);
+        terrain.write_level(patch.first_level + patch.level_count - 1, vertices);
+        for (const PackedVertex& vertex : vertices) {
             auto nearest = [&](float at, float from, float step) {
                 return uint32_t(std::clamp((at - from) / step + 0.5f, 0.0f, float(grid.cells)));
             };

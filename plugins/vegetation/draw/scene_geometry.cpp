@@ -42,8 +42,7 @@ Result<SceneGeometry> gather_geometry(const GeometrySource& source) {
     const uint64_t reserved = uint64_t(source.streamed_clouds) * k_cloud_points;
     uint64_t vertex_count = 0, owner_count = 0;
     for (const Ground& ground : source.grounds)
-        vertex_count +=
-            ground.coarse.vertices.size() + (ground.terrain ? ground.terrain->vertices().size() : 0);
+        vertex_count += ground.coarse.vertices.size() + (ground.terrain ? ground.terrain->vertex_count() : 0);
     for (const Plant& plant : plants) {
         vertex_count += plant.triangle_vertices.size() + plant.points.size() + plant.line_vertices.size();
         owner_count += plant.point_owners.size();
@@ -124,7 +123,11 @@ Result<SceneGeometry> gather_geometry(const GeometrySource& source) {
     for (const Ground& ground : source.grounds) {
         DrawGround drawn;
         drawn.terrain = ground.terrain;
-        if (ground.terrain) drawn.first_vertex = append(ground.terrain->vertices());
+        if (ground.terrain) {
+            drawn.first_vertex = uint32_t(geometry.vertices.size());
+            geometry.vertices.resize(geometry.vertices.size() + ground.terrain->vertex_count());
+            ground.terrain->write_vertices(std::span(geometry.vertices).subspan(drawn.first_vertex));
+        }
         drawn.first_coarse_vertex = append(ground.coarse.vertices);
         drawn.coarse_levels = ground.coarse.levels;
         geometry.grounds.push_back(drawn);

@@ -44,10 +44,12 @@ struct LoadedScene {
 vec3 mean_color(const Terrain& terrain) {
     dvec3 sum(0.0);
     double area_m2 = 0.0;
+    std::vector<PackedVertex> vertices;
     for (const TerrainPatch& patch : terrain.patches()) {
         if (patch.level_count == 0) continue;
         const TerrainLevel& level = terrain.levels()[patch.first_level + patch.level_count - 1];
-        const auto vertices = terrain.vertices().subspan(level.first_vertex, level.vertex_count);
+        vertices.resize(level.vertex_count);
+        terrain.write_level(patch.first_level + patch.level_count - 1, vertices);
         for (size_t v = 0; v + 2 < vertices.size(); v += 3) {
             const PackedVertex &a = vertices[v], &b = vertices[v + 1], &c = vertices[v + 2];
             const double twice_m2 = std::fabs(double(b.x_plant - a.x_plant) * double(c.z_plant - a.z_plant) -

@@ -118,13 +118,8 @@ Box bounds_of(const HeightField& field, std::span<const LevelGrid> levels) {
     return bounds;
 }
 
-<<<<<<< HEAD
 void write_grid(const HeightField& field, const LevelGrid& grid, const uint32_t* words,
                 PackedVertex* vertex) {
-=======
-void write_level(const HeightField& field, const LevelGrid& grid, const uint32_t* words,
-                 PackedVertex* vertex) {
->>>>>>> 99f8da08582d947845ea3bc126b9347369e3a8dd
     const LevelPlaces place{field, grid};
     auto put = [&](uint32_t column, uint32_t row, float below_m, vec2 outwards_m) {
         const vec3 at = place(column, row, below_m, outwards_m);
@@ -293,7 +288,6 @@ TerrainMesh build_patches(const HeightField& field) {
     return mesh;
 }
 
-<<<<<<< HEAD
 void write_level(const HeightField& field, const TerrainMesh& mesh, uint32_t level,
                  std::span<const uint32_t> words, std::span<PackedVertex> of_level) {
     assert(words.size() == mesh.word_count && of_level.size() == mesh.levels[level].vertex_count);
@@ -307,56 +301,7 @@ void write_vertices(const HeightField& field, const TerrainMesh& mesh, std::span
         for (size_t level = first; level < last; ++level)
             write_level(field, mesh, uint32_t(level), words,
                         all.subspan(mesh.levels[level].first_vertex, mesh.levels[level].vertex_count));
-=======
-std::vector<PackedVertex> write_vertices(const HeightField& field, const TerrainMesh& mesh,
-                                         std::span<const uint32_t> words) {
-    assert(words.size() == mesh.word_count);
-    std::vector<PackedVertex> vertices(mesh.vertex_count);
-    parallel_for(mesh.levels.size(), 8, [&](size_t first, size_t last) {
-        for (size_t level = first; level < last; ++level)
-            write_level(field, mesh.grids[level], &words[mesh.grids[level].first_word],
-                        &vertices[mesh.levels[level].first_vertex]);
     });
-    return vertices;
-}
-
-std::vector<uint32_t> color_levels(const HeightField& field, const GroundSurface& ground,
-                                   const TerrainMesh& mesh) {
-    std::vector<uint32_t> words(mesh.word_count);
-    parallel_for(mesh.grids.size(), 4, [&](size_t first, size_t last) {
-        std::vector<vec3> owed;
-        for (size_t level = first; level < last; ++level) {
-            const auto& [first_column, first_row, shift, across, down, first_word, skirt_m] =
-                mesh.grids[level];
-            owed.assign(size_t(across) * down + across + 1, vec3(0.0f));
-            for (uint32_t row = 0; row < down; ++row)
-                for (uint32_t column = 0; column < across; ++column) {
-                    const size_t at = size_t(row) * across + column;
-                    const uint32_t sample =
-                        ((row << shift) + first_row) * field.columns + (column << shift) + first_column;
-                    // The same dither wherever a sample is the same place.
-                    const uint32_t place =
-                        uint32_t(field.wrapped_sample(sample % field.columns, sample / field.columns));
-                    const Mean mean = mean_around(field, ground, sample, 1u << shift);
-                    // On the border nothing is owed: both patches there must come to the same colour.
-                    const bool border = column == 0 || row == 0 || column + 1 == across || row + 1 == down;
-                    const vec3 wanted = border ? mean.color : mean.color + owed[at],
-                               color = nearest_color(wanted, mean.color);
-                    const vec3 rest = (wanted - color) * (1.0f / 16.0f);
-                    if (column + 1 < across) {
-                        owed[at + 1] += rest * 7.0f;
-                        owed[at + across + 1] += rest;
-                    }
-                    if (column > 0) owed[at + across - 1] += rest * 3.0f;
-                    owed[at + across] += rest * 5.0f;
-                    words[first_word + at] =
-                        encode_surface({normalize_or(mean.normal, vec3(0, 1, 0)), color, mean.light, false},
-                                       mix_bits(place + mix_bits(shift + 1u)));
-                }
-        }
->>>>>>> 99f8da08582d947845ea3bc126b9347369e3a8dd
-    });
-    return words;
 }
 
 std::vector<uint32_t> color_levels(const HeightField& field, const GroundSurface& ground,

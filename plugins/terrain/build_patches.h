@@ -47,16 +47,10 @@ struct GroundSurface {
 std::vector<uint32_t> color_levels(const HeightField& field, const GroundSurface& ground,
                                    const TerrainMesh& mesh);
 
-<<<<<<< HEAD
 // Of all levels, where they say, or of one. Requires the words of all grids, and room for as many as there are.
 void write_vertices(const HeightField& field, const TerrainMesh& mesh, std::span<const uint32_t> words,
                     std::span<PackedVertex> all);
 void write_level(const HeightField& field, const TerrainMesh& mesh, uint32_t level,
                  std::span<const uint32_t> words, std::span<PackedVertex> of_level);
-=======
-// Those of all levels, where they say. Requires the words of all grids.
-std::vector<PackedVertex> write_vertices(const HeightField& field, const TerrainMesh& mesh,
-                                         std::span<const uint32_t> words);
->>>>>>> 99f8da08582d947845ea3bc126b9347369e3a8dd
 
 }  // namespace coppice

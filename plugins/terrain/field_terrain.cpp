@@ -42,7 +42,6 @@ const std::vector<uint32_t>& FieldTerrain::words() const {
 
 std::span<const PackedVertex> FieldTerrain::vertices() const {
     std::lock_guard lock(mutex_);
-<<<<<<< HEAD
     if (vertices_.empty()) {
         vertices_.resize(mesh_.vertex_count);
         coppice::write_vertices(field_, mesh_, words(), vertices_);
@@ -60,12 +59,6 @@ void FieldTerrain::write_level(uint32_t level, std::span<PackedVertex> of_level)
     coppice::write_level(field_, mesh_, level, words(), of_level);
 }
 
-=======
-    if (vertices_.empty()) vertices_ = write_vertices(field_, mesh_, words());
-    return vertices_;
-}
-
->>>>>>> 99f8da08582d947845ea3bc126b9347369e3a8dd
 PackedTerrain FieldTerrain::pack() const {
     std::lock_guard lock(mutex_);
     return pack_ground(field_, words());

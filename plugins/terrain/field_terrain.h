@@ -24,12 +24,9 @@ class FieldTerrain final : public Terrain {
     std::span<const TerrainPatch> patches() const override { return mesh_.patches; }
     std::span<const TerrainLevel> levels() const override { return mesh_.levels; }
     std::span<const PackedVertex> vertices() const override;
-<<<<<<< HEAD
     uint32_t vertex_count() const override { return mesh_.vertex_count; }
     void write_vertices(std::span<PackedVertex> all) const override;
     void write_level(uint32_t level, std::span<PackedVertex> of_level) const override;
-=======
->>>>>>> 99f8da08582d947845ea3bc126b9347369e3a8dd
     void shade(float x_local, float z_local, float radius_m, float amount) override;
     TerrainLayout layout() const override {
         return {vec2(field_.x_of(0), field_.z_of(0)), field_.cell_m, field_.columns - 1, field_.rows - 1};

@@ -66,15 +66,11 @@ class Terrain {
     virtual std::span<const TerrainPatch> patches() const = 0;
     virtual std::span<const TerrainLevel> levels() const = 0;
     virtual std::span<const PackedVertex> vertices() const = 0;  // positions local
-<<<<<<< HEAD
     // The same, without keeping them here as well: of all levels, as many as vertex_count(), or those of one.
     virtual uint32_t vertex_count() const = 0;
     virtual void write_vertices(std::span<PackedVertex> all) const = 0;
     virtual void write_level(uint32_t level, std::span<PackedVertex> of_level) const = 0;
     // Multiplies the ground's colour around a point, for what shades it; call before vertices are used.
-=======
-    // Multiplies the ground's colour around a point, for what shades it; call before vertices() is used.
->>>>>>> 99f8da08582d947845ea3bc126b9347369e3a8dd
     // amount in [0, 1]; falls off smoothly to nothing at radius_m. A packed ground stays as it is.
     virtual void shade(float x_local, float z_local, float radius_m, float amount) = 0;
     // What the ground hides can be told only where these two are known.

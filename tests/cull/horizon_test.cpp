@@ -17,18 +17,12 @@ class FieldTerrain final : public Terrain {
     explicit FieldTerrain(HeightField field, dvec3 origin_world = dvec3(0.0))
         : field_(std::move(field)),
           mesh_(build_patches(field_)),
-<<<<<<< HEAD
           words_(mesh_.word_count),
           vertices_(mesh_.vertex_count),
           bounds_(mesh_.bounds()),
           origin_world_(origin_world) {
         write_vertices(vertices_);
     }
-=======
-          vertices_(write_vertices(field_, mesh_, std::vector<uint32_t>(mesh_.word_count))),
-          bounds_(mesh_.bounds()),
-          origin_world_(origin_world) {}
->>>>>>> 99f8da08582d947845ea3bc126b9347369e3a8dd
     dvec3 origin_world() const override { return origin_world_; }
     Box bounds_local() const override { return bounds_; }
     float height_at(float x, float z) const override { return field_.height_at(x, z); }
@@ -36,7 +30,6 @@ class FieldTerrain final : public Terrain {
     std::span<const TerrainPatch> patches() const override { return mesh_.patches; }
     std::span<const TerrainLevel> levels() const override { return mesh_.levels; }
     std::span<const PackedVertex> vertices() const override { return vertices_; }
-<<<<<<< HEAD
     uint32_t vertex_count() const override { return mesh_.vertex_count; }
     void write_vertices(std::span<PackedVertex> all) const override {
         coppice::write_vertices(field_, mesh_, words_, all);
@@ -44,8 +37,6 @@ class FieldTerrain final : public Terrain {
     void write_level(uint32_t level, std::span<PackedVertex> of_level) const override {
         coppice::write_level(field_, mesh_, level, words_, of_level);
     }
-=======
->>>>>>> 99f8da08582d947845ea3bc126b9347369e3a8dd
     void shade(float, float, float, float) override {}
     TerrainLayout layout() const override {
         return {vec2(field_.x_of(0), field_.z_of(0)), field_.cell_m, field_.columns - 1, field_.rows - 1};
@@ -56,10 +47,7 @@ class FieldTerrain final : public Terrain {
   private:
     HeightField field_;
     TerrainMesh mesh_;
-<<<<<<< HEAD
     std::vector<uint32_t> words_;
-=======
->>>>>>> 99f8da08582d947845ea3bc126b9347369e3a8dd
     std::vector<PackedVertex> vertices_;
     Box bounds_;
     dvec3 origin_world_;

@@ -29,13 +29,8 @@ TEST(BuildPatches, LeastHeightsAreThoseOfEachLevelsSurface) {
         for (uint32_t i = 0; i < columns * rows; ++i)
             field.heights_m.push_back(random.next_in(-20.0f, 30.0f));
         const TerrainMesh mesh = build_patches(field);
-<<<<<<< HEAD
         std::vector<PackedVertex> vertices(mesh.vertex_count);
         write_vertices(field, mesh, std::vector<uint32_t>(mesh.word_count), vertices);
-=======
-        const std::vector<PackedVertex> vertices =
-            write_vertices(field, mesh, std::vector<uint32_t>(mesh.word_count));
->>>>>>> 99f8da08582d947845ea3bc126b9347369e3a8dd
         ASSERT_EQ(mesh.least_heights.size(), mesh.levels.size() * k_blocks_across * k_blocks_across);
         const uint32_t across = (columns - 1 + k_patch_cells - 1) / k_patch_cells;
         for (uint32_t p = 0; p < mesh.patches.size(); ++p) {

@@ -262,7 +262,6 @@ TEST(LoadTerrain, ShadingDarkensAroundOnly) {
     EXPECT_FALSE(shaded->vertices().empty());
 }
 
-<<<<<<< HEAD
 TEST(LoadTerrain, VerticesAreWrittenAsTheyAreKept) {
     auto terrain = load(k_hills);
     std::vector<PackedVertex> all(terrain->vertex_count());
@@ -278,8 +277,6 @@ TEST(LoadTerrain, VerticesAreWrittenAsTheyAreKept) {
     }
 }
 
-=======
->>>>>>> 99f8da08582d947845ea3bc126b9347369e3a8dd
 TEST(LoadTerrain, AShadeMayComeAfterTheVertices) {
     auto at_once = load(k_hills), later = load(k_hills);
     at_once->shade(20.0f, -10.0f, 9.0f, 0.6f);

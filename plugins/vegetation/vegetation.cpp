@@ -342,8 +342,10 @@ class VegetationSystems final : public Vegetation {
         points_of_1px.sample_distance_px = 1.0f;
         points_of_1px.line_sample_distance_px = 1e-3f;
         const float stand_in_spread =
-            std::sqrt(drawn_.splat_factor) *
-            widest_spread_px(geometry_.least_importance, geometry_.most_line_width, points_of_1px);
+            residency_
+                ? std::sqrt(drawn_.splat_factor) *
+                      widest_spread_px(geometry_.least_importance, geometry_.most_line_width, points_of_1px)
+                : 0.0f;
         tile_list_.list(tiles, plants, frustum_, camera_.position_world,
                         {drawn_.level_of_detail ? sample_distance_px / std::sqrt(drawn_.splat_factor) : 0.0f,
                          motion_m_, horizon, spread_px, stand_in_spread});

@@ -92,7 +92,7 @@ TEST_F(TileLists, AStandInIsHiddenWhereItsLargePointsAre) {
     EXPECT_EQ(list_.clouds().size(), 0u);
     EXPECT_EQ(list_.runs().size(), 0u);
     EXPECT_EQ(list_.hidden_tile_count, 1u);
-    EXPECT_TRUE(list_.wishes().empty());
+    EXPECT_TRUE(is_wished(0, TileBlockKind::plants)) << "it would be forgotten and read again";
 }
 
 TEST_F(TileLists, FarBelowTheHorizonAStandInIsHiddenToo) {
@@ -128,6 +128,24 @@ TEST_F(TileLists, AParentStandsInUntilItsPointsAreHiddenWhereAChildIsMissing) {
     ASSERT_EQ(list_.clouds().size(), 1u);
     EXPECT_EQ(list_.clouds()[0].cloud, 0u);
     EXPECT_TRUE(is_wished(2, TileBlockKind::cloud)) << "it would stand there for ever";
+}
+
+TEST_F(TileLists, WhatIsWishedForDoesNotFollowFromWhatIsInMemory) {
+    const Horizon horizon = horizon_of_a_wall(frustum_);
+    const Tile shown = tile_at(vec3(-60, 60, -200), vec3(20)), hidden = tile_at(vec3(60, 30, -200), vec3(20));
+    const Tile parent = tile_at(vec3(0, 45, -200), vec3(140, 50, 20));
+    const TileLevels levels{0, 1, 2, TileLevels::k_none, k_finest_density, 1, 2};
+    add_tiles(std::array{parent, shown, hidden}, std::array{levels, leaf(1), leaf(2)});
+    for (bool in_memory : {false, true}) {
+        if (in_memory) {
+            add_plant(1);
+            add_plant(2);
+        }
+        list(&horizon);
+        EXPECT_EQ(list_.wishes().size(), 5u) << "three clouds and the plants of two";
+        EXPECT_EQ(list_.clouds().size(), in_memory ? 0u : 2u);
+        EXPECT_EQ(list_.runs().size(), in_memory ? 1u : 0u) << "only of the one that is shown";
+    }
 }
 
 }  // namespace

@@ -34,7 +34,8 @@ bool TileList::lacks_detail(const TileLevels& levels, const Pending& at) const {
 }
 
 // What is drawn of a tile from memory says how far beside the tile it can be seen: were a stand-in left out sooner, its
-// larger points would vanish in full view.
+// larger points would vanish in full view. What is wished for must not follow from what is in memory: a tile that is read
+// because its stand-in shows would be forgotten once it is there and hidden, and read again.
 TileList::SeenTile TileList::see(const Pending& at, const Frustum& frustum, const Settings& settings) const {
     const Tile& tile = tile_of_row_[at.row];
     const TileLevels& levels = levels_of_row_[at.row];
@@ -55,29 +56,33 @@ TileList::SeenTile TileList::see(const Pending& at, const Frustum& frustum, cons
     seen.density = density_at(most_px);
     seen.density_soon = density_at(focal_px / std::max(soon_m, frustum.near_m));
 
-    seen.stand_in_spread_px = settings.spread_px;
-    if (levels.cloud == TileLevels::k_none) {
-        seen.stand_in_spread_px = at.stand_in_spread_px;
-    } else if (seen.density > levels.finest_density && lacks_detail(levels, at)) {
-        const float sample_distance_px = most_px / std::sqrt(std::max(levels.finest_density, 1e-12f));
-        seen.stand_in_spread_px = std::max(
-            settings.spread_px, std::min(settings.stand_in_spread * sample_distance_px, k_widest_spread_px));
-    }
-    seen.inside = at.inside;
-    seen.outside = false;
-    if (!at.inside) {
-        const Visibility visibility = see_box(frustum, seen.bounds_camera);
-        seen.outside = visibility == Visibility::outside;
-        seen.inside = visibility == Visibility::inside;
-        if (seen.outside && seen.stand_in_spread_px > settings.spread_px) {
-            const float beside_m =
-                seen.stand_in_spread_px / frustum.focal_px * farthest_m(seen.bounds_camera);
-            seen.outside = see_box(frustum, {seen.bounds_camera.min - beside_m,
-                                             seen.bounds_camera.max + beside_m}) == Visibility::outside;
-        }
-    }
-    seen.hidden = !seen.outside && settings.horizon &&
-                  settings.horizon->hidden(seen.bounds_camera, seen.stand_in_spread_px);
+    const bool suffices = seen.density <= levels.finest_density;
+    const float sample_distance_px = most_px / std::sqrt(std::max(levels.finest_density, 1e-12f));
+    seen.stand_in_spread_px =
+        suffices ? settings.spread_px
+                 : std::max(settings.spread_px,
+                            std::min(settings.stand_in_spread * sample_distance_px, k_widest_spread_px));
+    const float shown_px = levels.cloud == TileLevels::k_none      ? at.stand_in_spread_px
+                           : !suffices && lacks_detail(levels, at) ? seen.stand_in_spread_px
+                                                                   : settings.spread_px;
+    const float most_spread_px = std::max(at.stand_in_spread_px, seen.stand_in_spread_px);
+    const Visibility visibility = at.inside ? Visibility::inside : see_box(frustum, seen.bounds_camera);
+    seen.inside = visibility == Visibility::inside;
+    auto is_outside = [&](float spread_px) {
+        if (visibility != Visibility::outside) return false;
+        // That ordinary points reach over the picture's border by a pixel or two counts nowhere.
+        if (spread_px <= settings.spread_px) return true;
+        const float beside_m = spread_px / frustum.focal_px * farthest_m(seen.bounds_camera);
+        return see_box(frustum, {seen.bounds_camera.min - beside_m, seen.bounds_camera.max + beside_m}) ==
+               Visibility::outside;
+    };
+    auto is_hidden = [&](float spread_px) {
+        return settings.horizon && settings.horizon->hidden(seen.bounds_camera, spread_px);
+    };
+    seen.outside = is_outside(shown_px);
+    seen.hidden = !seen.outside && is_hidden(shown_px);
+    seen.left_out = (seen.outside || seen.hidden) &&
+                    (most_spread_px <= shown_px || is_outside(most_spread_px) || is_hidden(most_spread_px));
     const float size_px =
         glm::length(tile.bounds_tile.size()) * frustum.focal_px / std::max(soon_m, frustum.near_m);
     seen.priority = std::min(size_px * size_px, 1e30f) * (at.soon ? k_soon_share : 1.0f);
@@ -104,8 +109,9 @@ void TileList::visit(Pending at, const Frustum& frustum, const Settings& setting
     const Tile& tile = tile_of_row_[at.row];
     const TileLevels& levels = levels_of_row_[at.row];
     const SeenTile seen = see(at, frustum, settings);
-    hidden_tile_count += seen.hidden;
-    if (seen.outside || seen.hidden) return;
+    hidden_tile_count += seen.hidden && at.drawn;
+    if (seen.left_out) return;
+    if (seen.outside || seen.hidden) at.drawn = false;
     if (levels.is_streamed) wishes_.push_back({at.row, TileBlockKind::cloud, seen.priority});
 
     const bool suffices = seen.density <= levels.finest_density;

@@ -95,11 +95,12 @@ class TileList {
     struct SeenTile {
         vec3 origin_camera;
         Box bounds_camera;
-        float stand_in_spread_px;  // of its cloud, where that stands in for what is below
+        float stand_in_spread_px;  // of its cloud, if it stands in for what is below
         float nearest_m;
         float density, density_soon;  // that its nearest place asks for, now and where the viewer will be
         float priority;
         bool outside, inside, hidden;
+        bool left_out;  // outside or hidden, and so would be what stands in for any of it
     };
     SeenTile see(const Pending& at, const Frustum& frustum, const Settings& settings) const;
     // Whether what refines its cloud lacks in memory.

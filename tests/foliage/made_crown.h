@@ -12,9 +12,10 @@ inline vec3 any_direction(Random& random) {
     return {r * portable_cos(around), y, r * portable_sin(around)};
 }
 
-// leaf_count quads of 8 cm by 4.5 cm, nine a twig of 30 cm, the twigs in a ball so large that about `layers` leaves lie behind
+// leaf_count quads of 8 cm by 4.5 cm, twig_leaves a twig of 30 cm, the twigs in a ball so large that about `layers` leaves lie behind
 // each other in its middle.
-inline std::vector<Leaf> made_crown(uint32_t leaf_count, uint64_t seed, float layers = 4.0f) {
+inline std::vector<Leaf> made_crown(uint32_t leaf_count, uint64_t seed, float layers = 4.0f,
+                                    int twig_leaves = 9) {
     constexpr float k_length_m = 0.08f, k_width_m = 0.045f, k_twig_m = 0.3f;
     const float radius_m =
         std::sqrt(0.5f * float(leaf_count) * k_length_m * k_width_m / (k_pi * layers / 1.5f));
@@ -25,8 +26,8 @@ inline std::vector<Leaf> made_crown(uint32_t leaf_count, uint64_t seed, float la
         const vec3 foot =
             outwards * (radius_m * portable_pow(random.next_unit(), 1.0f / 3)) + vec3(0, radius_m, 0);
         const vec3 along = normalize_or(outwards + any_direction(random) * 0.8f, outwards);
-        for (int i = 0; i < 9 && crown.size() < leaf_count; ++i) {
-            const vec3 stalk = foot + along * (k_twig_m * float(i) / 9.0f);
+        for (int i = 0; i < twig_leaves && crown.size() < leaf_count; ++i) {
+            const vec3 stalk = foot + along * (k_twig_m * float(i) / float(twig_leaves));
             const vec3 normal = normalize_or(vec3(0, 0.7f, 0) + any_direction(random), vec3(0, 1, 0));
             const vec3 sideways = any_direction(random) + along * 0.5f;
             const vec3 u =

@@ -4,9 +4,9 @@
 #include <queue>
 #include <tuple>
 #include "plugins/vegetation/cook/join_leaves.h"
-#include "plugins/vegetation/cook/steer_coverage.h"
 #include "plugins/vegetation/cook/keep_light.h"
 #include "plugins/vegetation/cook/nearest_leaves.h"
+#include "plugins/vegetation/cook/steer_coverage.h"
 #include "runtime/core/jobs.h"
 
 namespace coppice {
@@ -24,7 +24,7 @@ class Collapser {
           built_size_(uint32_t(crown.size())),
           pairs_(leaf_limit_),
           gone_(leaf_limit_, false),
-          steering_(crown) {
+          steering_(crown, settings.least_area) {
         leaves_.reserve(leaf_limit_);
         raw_.reserve(leaf_limit_);
         for (uint32_t i = 0; i < crown.size(); ++i) {

@@ -72,7 +72,7 @@ JoinedLeaf join_leaves(const MeasuredLeaf& a, const MeasuredLeaf& b, const std::
     const double total_m2 = a.area_m2 + b.area_m2;
     JoinedLeaf best{{0, 1, 2, 3}, 1.0f};
     if (!(total_m2 > 0.0)) return best;
-    const float total = float(total_m2), share = float(a.area_m2 / total_m2);
+    const float total = float(total_m2), wished_m2 = total * wish.area, share = float(a.area_m2 / total_m2);
     const vec3 middle = a.middle * share + b.middle * (1.0f - share);
     std::array<vec3, 8> place;
     for (size_t k = 0; k < 4; ++k) place[k] = raw_a[k] - middle, place[k + 4] = raw_b[k] - middle;
@@ -94,7 +94,7 @@ JoinedLeaf join_leaves(const MeasuredLeaf& a, const MeasuredLeaf& b, const std::
         const float area_m2 = s.area_m2 + t.area_m2;
         const float fold = glm::dot(s.area_vector, t.area_vector) * float(quad.sense);
         if (!(area_m2 > 0.0f) || !(fold >= k_sharpest_fold * s.area_m2 * t.area_m2)) continue;
-        const float ratio = area_m2 / total;
+        const float ratio = area_m2 / wished_m2;
         float score = std::max(ratio, 1.0f / ratio) - 1.0f;
         if (score >= best_score) continue;
         const vec3 center =
@@ -111,7 +111,7 @@ JoinedLeaf join_leaves(const MeasuredLeaf& a, const MeasuredLeaf& b, const std::
             k_flatness_weight * std::fabs(std::sqrt(glm::dot(facing, facing)) * per_area - wish.flatness);
         if (score < best_score) best_score = score, best.corners = quad.corners, best_area_m2 = area_m2;
     }
-    if (best_area_m2 > 0.0f) best.growth = std::sqrt(float(total_m2 / double(best_area_m2)));
+    if (best_area_m2 > 0.0f) best.growth = std::sqrt(wished_m2 / best_area_m2);
     return best;
 }
 

@@ -14,6 +14,7 @@ struct JoinedLeaf {
 
 struct JoinWish {
     float flatness = 0.85f;  // |sum of the triangles' area vectors| over their area; [0, 1]
+    float area = 1.0f;       // of the area of both; > 0
     NormalSpread lean{};     // to be added to how the two leaves' surface faces, over its area
 };
 

@@ -7,7 +7,8 @@ if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
 endif()
 set(COPPICE_OUTPUT_DIR "${PROJECT_BINARY_DIR}")
 
-# Same results from every compiler: no fused multiply-add, no relaxed mathematics.
+# Same results from every compiler: no fused multiply-add, no relaxed mathematics. Nobody asks errno or the processor's
+# flags about mathematics, so that loops may be made vectors of.
 function(coppice_target target)
   target_compile_features(${target} PUBLIC cxx_std_20)
   # The runtime's shared libraries export all they declare; programs and plugins (one C entry) export nothing else.
@@ -17,7 +18,7 @@ function(coppice_target target)
     set(hidden -fno-semantic-interposition)
   endif()
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wno-missing-field-initializers -ffp-contract=off
-                                           ${hidden} $<$<BOOL:${COPPICE_WERROR}>:-Werror>
+                                           -fno-math-errno -fno-trapping-math ${hidden} $<$<BOOL:${COPPICE_WERROR}>:-Werror>
                                            $<$<CONFIG:Release>:-O3>)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
   target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)

@@ -24,7 +24,14 @@ struct PlantModel {
 };
 
 // Plant space to world space; its transpose turns back.
-mat3 rotation_matrix(PlantTurn turn);
+inline mat3 rotation_matrix(vec4 turn) {
+    constexpr float k_step = 1.0f / 32767.0f;
+    const float x = turn.x * k_step, y = turn.y * k_step, z = turn.z * k_step, w = turn.w * k_step;
+    return mat3(vec3(1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)),
+                vec3(2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)),
+                vec3(2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)));
+}
+inline mat3 rotation_matrix(PlantTurn turn) { return rotation_matrix(vec4(turn.x, turn.y, turn.z, turn.w)); }
 PlantTurn pack_turn(float x, float y, float z, float w);
 inline PlantTurn pack_turn_about_y(float angle_rad) {
     return pack_turn(0.0f, portable_sin(angle_rad * 0.5f), 0.0f, portable_cos(angle_rad * 0.5f));
@@ -34,7 +41,8 @@ inline PlantTurn pack_turn_about_y(float angle_rad) {
 // hold all its plants at full size.
 struct Tile {
     static constexpr const char* k_component_name = "tile";
-    dvec3 origin_world;  // counted from where its scene stands, which may be in several places: TileLevels::target
+    dvec3
+        origin_world;  // counted from where its scene stands, which may be in several places: TileLevels::target
     Box bounds_tile;
     uint64_t plant_count = 0;
 };

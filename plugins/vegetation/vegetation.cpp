@@ -349,7 +349,7 @@ class VegetationSystems final : public Vegetation {
         tile_list_.list(tiles, plants, frustum_, camera_.position_world,
                         {drawn_.level_of_detail ? sample_distance_px / std::sqrt(drawn_.splat_factor) : 0.0f,
                          motion_m_, horizon, spread_px, stand_in_spread});
-        frame_plants_.see(tile_list_, geometry_, frustum_, drawn_, horizon, spread_px);
+        frame_plants_.see(tile_list_, geometry_, frustum_, horizon, spread_px);
     }
 
     // Which tiles are clouds and what plants' gains are depends on d' itself, so it is looked for until it is what it was

@@ -9,12 +9,13 @@ struct ExpandCounts {
     uint64_t full_triangles = 0;
 };
 
+// seen: until work has been gathered.
 inline ExpandCounts expand_run(const PlantRun& run, const SceneGeometry& geometry, const Frustum& frustum,
-                               const FrameSettings& settings, uint32_t rest_index, WorkPart& work) {
-    SeenPlants seen;
-    see_plants(run, geometry, frustum, settings, nullptr, 0.0f, seen);
+                               const FrameSettings& settings, uint32_t rest_index, SeenPlants& seen,
+                               WorkPart& work) {
+    see_plants(run, geometry, frustum, nullptr, 0.0f, seen);
     draw_plants(seen, geometry, settings, rest_index, work);
-    return {uint32_t(seen.plants.size()), seen.full_triangles};
+    return {seen.plant_count, seen.full_triangles};
 }
 
 }  // namespace coppice

@@ -90,7 +90,7 @@ class TilePicture {
             expand_clouds({&cloud, 1}, geometry_, frustum, settings, work_.part(0));
         } else {
             expand_run({origin, true, scene_.positions, scene_.turns, scene_.plant_models}, geometry_,
-                       frustum, settings, 0, work_.part(0));
+                       frustum, settings, 0, seen_, work_.part(0));
         }
         points = work_.part(0).points;
         const WorkList::Size size = work_.size();
@@ -132,6 +132,7 @@ class TilePicture {
     Scene scene_;
     std::vector<TileNode> tree_;
     SceneGeometry geometry_;
+    SeenPlants seen_;
     WorkList work_;
     std::vector<uint64_t> words_;
 };

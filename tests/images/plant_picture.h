@@ -60,7 +60,7 @@ class PlantPicture {
         PlantModel plant_model{0, seed_ = mix_seed(seed_)};
         work_.begin(1);
         counts_ = expand_run({vec3(0.0f), inside, {&position, 1}, {&turn, 1}, {&plant_model, 1}}, geometry_,
-                             frustum, settings, 0, work_.part(0));
+                             frustum, settings, 0, seen_, work_.part(0));
         WorkList::Size size = work_.size();
         if (size.entries > rasteriser_->entries(0).size())
             COPPICE_CHECK(rasteriser_->grow(0, size.instances, size.entries));
@@ -103,6 +103,7 @@ class PlantPicture {
     gpu::CommandRing ring_;
     SceneGeometry geometry_;
     Plant plant_;
+    SeenPlants seen_;
     WorkList work_;
     ExpandCounts counts_;
     uint32_t seed_ = 1;

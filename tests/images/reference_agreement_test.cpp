@@ -130,7 +130,7 @@ class Drawer {
             for (PlantModel& model : view.scene.plant_models) model.seed = random_.next_bits();
             work_.begin(1);
             expand_run({vec3(0.0f), true, view.scene.positions, view.scene.turns, view.scene.plant_models},
-                       geometry_, frustum, settings, 0, work_.part(0));
+                       geometry_, frustum, settings, 0, seen_, work_.part(0));
             const WorkList::Size size = work_.size();
             if (size.entries > rasteriser_->entries(0).size())
                 COPPICE_CHECK(rasteriser_->grow(0, size.instances, size.entries));
@@ -165,6 +165,7 @@ class Drawer {
     std::unique_ptr<Rasteriser> rasteriser_;
     gpu::CommandRing ring_;
     SceneGeometry geometry_;
+    SeenPlants seen_;
     WorkList work_;
     Random random_{1};
 };

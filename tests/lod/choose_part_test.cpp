@@ -34,6 +34,12 @@ PackedPart twig_part() {
     return part;
 }
 
+PartChoice choose_points(const PackedPart& part, float area_px2, const FrameSettings& settings,
+                         float chance) {
+    const PartRule rule(part, settings);
+    return rule.expand(rule.choose({0.0f, area_px2, 0.0f, 0.0f}, chance));
+}
+
 PlantView view_at(float pixels_per_meter) { return {vec3(0, 0, -1), pixels_per_meter}; }
 
 // Blending draws p vertices, never more than 3k (paper, section 5.3).
@@ -59,8 +65,9 @@ TEST(ChoosePoints, SquaresCoverTheProjectedArea) {
             for (float area = 100.0f; area < 1900.0f * d * d / c_p; area *= 1.1f) {
                 PartChoice choice = choose_points(part, area, settings, 0.0f);
                 ASSERT_EQ(choice.triangles, 0u);
-                float covered = float(choice.points) * choice.splat_px * choice.splat_px;
-                EXPECT_NEAR(covered, c_p * area, 0.02f * c_p * area + choice.splat_px * choice.splat_px);
+                const float square_px2 = choice.splat_px * choice.splat_px * choice.mean_facing;
+                const float covered = float(choice.points) * square_px2;
+                EXPECT_NEAR(covered, c_p * area, 0.02f * c_p * area + square_px2);
             }
         }
 }
@@ -225,6 +232,48 @@ TEST(PixelsPerMeter, StaysFiniteInsideAPlant) {
         EXPECT_TRUE(before == 0.0f || here < 1.5f * before || distance_m < 3.0f) << distance_m;
         before = here;
     }
+}
+
+// Loops over plants are made vectors of; what they choose is what is chosen for each plant alone.
+TEST(ChooseParts, ManyAreChosenAsOneIs) {
+    Random random(17);
+    PackedPart leaves = leaf_part(40), twigs = twig_part(), trunk = twig_part(), bare = leaf_part(3);
+    trunk.line_count = 1;
+    bare.point_count = 0;
+    for (PackedPart* part : {&leaves, &twigs, &trunk})
+        for (float& gain : part->coverage_gain) gain = 0.7f + 0.6f * random.next_unit();
+    for (const PackedPart* part : {&leaves, &twigs, &trunk, &bare})
+        for (ProjectionMode mode : {ProjectionMode::measured, ProjectionMode::isotropic})
+            for (float d : {0.3f, 1.0f, 2.5f})
+                for (bool plain : {false, true}) {
+                    FrameSettings settings;
+                    settings.sample_distance_px = d;
+                    settings.projection = mode;
+                    settings.weigh_by_facing = settings.blend = !plain;
+                    constexpr size_t k_count = 203;  // no multiple of any vector's length
+                    std::vector<float> x(k_count), y(k_count), z(k_count), per_meter(k_count),
+                        chances(k_count);
+                    for (size_t i = 0; i < k_count; ++i) {
+                        x[i] = 0.6f * random.next_unit();
+                        y[i] = 0.6f * random.next_unit();
+                        z[i] = std::sqrt(1.0f - x[i] * x[i] - y[i] * y[i]);
+                        per_meter[i] = i == 0 ? 0.0f : std::exp(9.0f * random.next_unit() - 4.0f);
+                        chances[i] = random.next_unit();
+                    }
+                    const PlantViews views{x, y, z, per_meter};
+                    const PartRule rule(*part, settings);
+                    PartDemands demands;
+                    PartChoices choices;
+                    rule.demand(*part, views, settings, demands);
+                    choose_parts(rule, demands, chances, choices);
+                    for (size_t i = 0; i < k_count; ++i) {
+                        const PartDemand demand = rule.demand(project_part(*part, views[i], settings));
+                        const PartRule::Choice choice = rule.choose(demand, chances[i]);
+                        ASSERT_EQ(choices.form[i], choice.form) << i;
+                        ASSERT_EQ(choices.count[i], choice.count) << i;
+                        ASSERT_EQ(choices.asked[i], choice.asked) << i;
+                    }
+                }
 }
 
 }  // namespace

@@ -26,10 +26,12 @@ inline bool sees_sphere(const Frustum& frustum, vec3 center, float radius) {
 
 // A flat image shows a solid angle as cos^-3 of its angle to the axis times its area at the axis: the square root of
 // that, so that lengths scale by it. 1 to corner_cos^(-3/2), also for what lies outside the image.
-inline float off_axis_stretch(const Frustum& frustum, vec3 center, float distance_m) {
-    float along_m = glm::dot(frustum.forward, center);
-    float cosine = along_m > frustum.corner_cos * distance_m ? along_m / distance_m : frustum.corner_cos;
+inline float off_axis_stretch(float corner_cos, float along_m, float distance_m) {
+    const float cosine = along_m > corner_cos * distance_m ? along_m / distance_m : corner_cos;
     return distance_m > 0.0f ? 1.0f / (cosine * std::sqrt(cosine)) : 1.0f;
+}
+inline float off_axis_stretch(const Frustum& frustum, vec3 center, float distance_m) {
+    return off_axis_stretch(frustum.corner_cos, glm::dot(frustum.forward, center), distance_m);
 }
 
 enum class Visibility { outside, across, inside };

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 #include "plugins/vegetation/eco/part_chance.h"
+#include "runtime/core/vector_clones.h"
 
 namespace coppice {
 namespace {
@@ -11,23 +11,42 @@ namespace {
 // Multiples of the golden section.
 float turn_of(uint32_t rest_index) { return float(uint32_t(rest_index * 2654435769u) >> 8) * 0x1p-24f; }
 
+// In [0, 1), moved on by turn.
+inline float chance_of(uint32_t seed, uint32_t part_of_model, float turn) {
+    const float chance = part_chance(seed, part_of_model) + turn;
+    return chance < 1.0f ? chance : chance - 1.0f;
+}
+
+COPPICE_VECTOR_CLONES
+void chances_of(std::span<const uint32_t> seeds, uint32_t part_of_model, float turn,
+                PlantColumn<float>& out) {
+    const size_t count = std::min(seeds.size(), out.size());
+    for (size_t i = 0; i < count; ++i) out[i] = chance_of(seeds[i], part_of_model, turn);
+}
+
 }  // namespace
 
 void draw_plants(const SeenPlants& seen, const SceneGeometry& geometry, const FrameSettings& settings,
                  uint32_t rest_index, WorkPart& work) {
     const float turn = turn_of(rest_index);
-    const SeenPlant* with_instance = nullptr;
-    uint32_t instance = 0;
-    each_part(seen, geometry, settings,
-              [&](const SeenPlant& plant, uint32_t part, const PartProjection& projected) {
-                  float chance = part_chance(plant.model, part - plant.first_part_of_model) + turn;
-                  if (chance >= 1.0f) chance -= 1.0f;
-                  const PartChoice choice = choose_part(geometry.parts[part], projected, settings, chance);
-                  if ((choice.triangles | choice.points | choice.lines) == 0) return;
-                  if (std::exchange(with_instance, &plant) != &plant)
-                      instance = work.add_instance(plant.instance);
-                  work.add(geometry.part_geometry[part], choice, instance, turn);
-              });
+    work.share_instances(std::span(seen.instances).first(seen.plant_count));
+    PlantColumn<float> chances;
+    PartChoices choices;
+    each_part(
+        seen, geometry, settings,
+        [&](const SeenPart& many) {
+            const size_t count = many.left_out.size();
+            chances_of(std::span(seen.seed).subspan(many.first_plant, count), many.part_of_model, turn,
+                       chances);
+            choose_parts(many.rule, many.demands, std::span(chances).first(count), choices);
+            work.add(geometry.part_geometry[many.part], many.rule, choices, many.left_out, many.first_plant,
+                     turn);
+        },
+        [&](uint32_t plant, uint32_t part, uint32_t part_of_model, const PartRule& rule,
+            const PartDemand& demand) {
+            const float chance = chance_of(seen.seed[plant], part_of_model, turn);
+            work.add(geometry.part_geometry[part], rule.expand(rule.choose(demand, chance)), plant, turn);
+        });
 }
 
 namespace {

@@ -8,7 +8,7 @@
 namespace coppice {
 
 // The plants seen of one run, into one part of the work list. Any thread. rest_index: RestingFrame::index, which points
-// and lines.
+// and lines. seen must stay as it is until the work list has been gathered: it holds the instances.
 void draw_plants(const SeenPlants& seen, const SceneGeometry& geometry, const FrameSettings& settings,
                  uint32_t rest_index, WorkPart& work);
 

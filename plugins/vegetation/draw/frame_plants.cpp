@@ -7,14 +7,14 @@
 namespace coppice {
 
 void FramePlants::see(const TileList& tiles, const SceneGeometry& geometry, const Frustum& frustum,
-                      const FrameSettings& settings, const Horizon* horizon, float spread_px) {
+                      const Horizon* horizon, float spread_px) {
     const std::span<const PlantRun> runs = tiles.runs();
     run_count_ = runs.size();
-    while (seen_.size() < run_count_) seen_.emplace_back().plants.reserve(k_plants_a_run);
+    if (seen_.size() < run_count_) seen_.resize(run_count_);
     parallel_for(run_count_, 1, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; ++i)
-            see_plants(runs[i], geometry, frustum, settings, runs[i].may_be_hidden ? horizon : nullptr,
-                       spread_px, seen_[i]);
+            see_plants(runs[i], geometry, frustum, runs[i].may_be_hidden ? horizon : nullptr, spread_px,
+                       seen_[i]);
     });
 }
 
@@ -53,7 +53,7 @@ void FramePlants::count(uint32_t& visible, uint32_t& hidden, uint64_t& full_tria
     visible = hidden = 0;
     full_triangles = 0;
     for (size_t i = 0; i < run_count_; ++i) {
-        visible += uint32_t(seen_[i].plants.size());
+        visible += seen_[i].plant_count;
         hidden += seen_[i].hidden_plants;
         full_triangles += seen_[i].full_triangles;
     }

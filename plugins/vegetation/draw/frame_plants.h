@@ -8,7 +8,7 @@ class FramePlants {
   public:
     // Of the list's runs; horizon and spread_px as for see_plants. The list must hold until the last draw.
     void see(const TileList& tiles, const SceneGeometry& geometry, const Frustum& frustum,
-             const FrameSettings& settings, const Horizon* horizon, float spread_px);
+             const Horizon* horizon, float spread_px);
 
     // What draw will draw, by d', gains and cells taken at the settings' d'. Holds until the next call.
     const BudgetHistogram& measure(const TileList& tiles, const SceneGeometry& geometry,

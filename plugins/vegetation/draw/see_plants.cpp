@@ -1,16 +1,19 @@
 #include "plugins/vegetation/draw/see_plants.h"
 
 #include <algorithm>
+#include "runtime/core/vector_clones.h"
 
 namespace coppice {
 namespace {
 
+constexpr size_t k_block = 64;  // plants looked at together, so that their columns stay in the nearest cache
+using Column = std::array<float, k_block>;
+
 // Cells of a plant nearer than 3 radii are looked at from where they are. Farther than 6 no side of the plant is much
 // nearer than another, and its parts are drawn in one piece; in between cells are looked at from places that move from
 // the plant's centre to their own, so that nothing jumps.
-float share_of_own_place(const DrawModel& model, float distance_m, float scale) {
-    return model.has_cells ? glm::clamp(2.0f - distance_m / (3.0f * model.radius_m * scale), 0.0f, 1.0f)
-                           : 0.0f;
+float share_of_own_place(float distance_m, float radius_m) {
+    return glm::clamp(2.0f - distance_m / (3.0f * radius_m), 0.0f, 1.0f);
 }
 
 inline PlantView view_of(const Frustum& frustum, const mat3& rotation, vec3 center, float distance_m,
@@ -20,109 +23,253 @@ inline PlantView view_of(const Frustum& frustum, const mat3& rotation, vec3 cent
                 off_axis_stretch(frustum, center, distance_m)};
 }
 
-// Which plants of a block may be in view: by a sphere around the foot, in loops that compilers make vectors of, before
-// anything is turned. Most plants of a tile across the border of the view are left out by it.
-class NearView {
-  public:
-    // Indices into the block, ascending. Requires at most k_plants_a_run plants.
-    std::span<const uint16_t> find(const PlantRun& run, size_t first, size_t count,
-                                   const SceneGeometry& geometry, const Frustum& frustum) {
+struct Block {
+    Column x, y, z, scale;                  // of the foot, camera-relative
+    Column turn_x, turn_y, turn_z, turn_w;  // PlantTurn
+    std::array<uint16_t, k_block> index;    // in the run
+    Column reach_m;                         // into the view, past the nearest plane; < 0: outside
+    Column center_x, center_y, center_z;    // of the sphere that holds the plant
+    Column radius_m, distance_m;
+    Column direction_x, direction_y, direction_z, pixels_per_meter;
+    std::array<Column, 9> rows;  // plant space to world space, scaled; row after row
+};
+
+// How far spheres reach into the view.
+inline void reach_into_view(const Frustum& frustum, const float* x, const float* y, const float* z,
+                            const float* radius_m, float* reach_m, size_t count) {
+    const vec3 f = frustum.forward;
+    for (size_t i = 0; i < count; ++i)
+        reach_m[i] = f.x * x[i] + f.y * y[i] + f.z * z[i] - frustum.near_m + radius_m[i];
+    for (const vec3& n : frustum.side_normals)
         for (size_t i = 0; i < count; ++i) {
-            const PlantPosition& place = run.positions[first + i];
-            x_[i] = run.origin_camera.x + place.x_tile;
-            y_[i] = run.origin_camera.y + place.y_tile;
-            z_[i] = run.origin_camera.z + place.z_tile;
-            radius_m_[i] = geometry.models[run.models[first + i].model].foot_radius_m * place.scale;
+            const float side_m = n.x * x[i] + n.y * y[i] + n.z * z[i] + radius_m[i];
+            reach_m[i] = side_m < reach_m[i] ? side_m : reach_m[i];
         }
-        const vec3 f = frustum.forward;
-        for (size_t i = 0; i < count; ++i)
-            reach_m_[i] = f.x * x_[i] + f.y * y_[i] + f.z * z_[i] - frustum.near_m + radius_m_[i];
-        for (const vec3& n : frustum.side_normals)
-            for (size_t i = 0; i < count; ++i) {
-                const float reach_m = n.x * x_[i] + n.y * y_[i] + n.z * z_[i] + radius_m_[i];
-                reach_m_[i] = reach_m < reach_m_[i] ? reach_m : reach_m_[i];
-            }
-        size_t found = 0;
-        for (size_t i = 0; i < count; ++i) {
-            found_[found] = uint16_t(i);
-            found += !(reach_m_[i] < 0.0f);
-        }
-        return {found_, found};
+}
+
+// Takes the plants [first, first + count) of a run, without those that a sphere around the foot shows to be outside.
+COPPICE_VECTOR_CLONES
+size_t load_block(const PlantRun& run, size_t first, size_t count, const DrawModel& model,
+                  const Frustum& frustum, Block& block) {
+    const PlantPosition* places = &run.positions[first];
+    const vec3 origin = run.origin_camera;
+    for (size_t i = 0; i < count; ++i) {
+        block.x[i] = origin.x + places[i].x_tile;
+        block.y[i] = origin.y + places[i].y_tile;
+        block.z[i] = origin.z + places[i].z_tile;
+        block.scale[i] = places[i].scale;
     }
-    std::span<const uint16_t> all(size_t count) {
-        for (size_t i = 0; i < count; ++i) found_[i] = uint16_t(i);
-        return {found_, count};
+    size_t found = count;
+    if (run.inside) {
+        for (size_t i = 0; i < count; ++i) block.index[i] = uint16_t(first + i);
+    } else {
+        for (size_t i = 0; i < count; ++i) block.radius_m[i] = model.foot_radius_m * block.scale[i];
+        reach_into_view(frustum, block.x.data(), block.y.data(), block.z.data(), block.radius_m.data(),
+                        block.reach_m.data(), count);
+        found = 0;
+        for (size_t i = 0; i < count; ++i) {
+            block.index[found] = uint16_t(first + i);
+            block.x[found] = block.x[i];
+            block.y[found] = block.y[i];
+            block.z[found] = block.z[i];
+            block.scale[found] = block.scale[i];
+            found += !(block.reach_m[i] < 0.0f);
+        }
+    }
+    for (size_t i = 0; i < found; ++i) {
+        const PlantTurn turn = run.turns[block.index[i]];
+        block.turn_x[i] = float(turn.x);
+        block.turn_y[i] = float(turn.y);
+        block.turn_z[i] = float(turn.z);
+        block.turn_w[i] = float(turn.w);
+    }
+    return found;
+}
+
+// rotation_matrix, view_of and sees_sphere of each, in plain numbers, which compilers make vectors of.
+COPPICE_VECTOR_CLONES
+void look_at_block(const DrawModel& model, const Frustum& camera, size_t count, Block& b) {
+    const Frustum frustum = camera;  // which what is written cannot change
+    const float middle_x = model.center_plant.x, middle_y = model.center_plant.y,
+                middle_z = model.center_plant.z;
+    const float model_radius_m = model.radius_m;
+    for (size_t i = 0; i < count; ++i) {
+        constexpr float k_step = 1.0f / 32767.0f;
+        const float x = b.turn_x[i] * k_step, y = b.turn_y[i] * k_step;
+        const float z = b.turn_z[i] * k_step, w = b.turn_w[i] * k_step;
+        const float scale = b.scale[i];
+        const float xx = 1 - 2 * (y * y + z * z), xy = 2 * (x * y - w * z), xz = 2 * (x * z + w * y);
+        const float yx = 2 * (x * y + w * z), yy = 1 - 2 * (x * x + z * z), yz = 2 * (y * z - w * x);
+        const float zx = 2 * (x * z - w * y), zy = 2 * (y * z + w * x), zz = 1 - 2 * (x * x + y * y);
+        const float from_foot_x = middle_x * scale, from_foot_y = middle_y * scale,
+                    from_foot_z = middle_z * scale;
+        const float center_x = b.x[i] + (xx * from_foot_x + xy * from_foot_y + xz * from_foot_z);
+        const float center_y = b.y[i] + (yx * from_foot_x + yy * from_foot_y + yz * from_foot_z);
+        const float center_z = b.z[i] + (zx * from_foot_x + zy * from_foot_y + zz * from_foot_z);
+        const float radius_m = model_radius_m * scale;
+        const float distance_m = std::sqrt(center_x * center_x + center_y * center_y + center_z * center_z);
+        const float per_distance = 1.0f / distance_m;
+        const float unit_x = center_x * per_distance, unit_y = center_y * per_distance,
+                    unit_z = center_z * per_distance;
+        const float direction_x = xx * unit_x + yx * unit_y + zx * unit_z;
+        const float direction_y = xy * unit_x + yy * unit_y + zy * unit_z;
+        const float direction_z = xz * unit_x + yz * unit_y + zz * unit_z;
+        const float along_m =
+            frustum.forward.x * center_x + frustum.forward.y * center_y + frustum.forward.z * center_z;
+        b.center_x[i] = center_x;
+        b.center_y[i] = center_y;
+        b.center_z[i] = center_z;
+        b.radius_m[i] = radius_m;
+        b.distance_m[i] = distance_m;
+        b.direction_x[i] = distance_m > 0.0f ? direction_x : 0.0f;
+        b.direction_y[i] = distance_m > 0.0f ? direction_y : 0.0f;
+        b.direction_z[i] = distance_m > 0.0f ? direction_z : -1.0f;
+        b.pixels_per_meter[i] =
+            pixels_per_meter(frustum.focal_px, distance_m, radius_m, frustum.near_m, scale) *
+            off_axis_stretch(frustum.corner_cos, along_m, distance_m);
+        b.rows[0][i] = xx * scale, b.rows[1][i] = xy * scale, b.rows[2][i] = xz * scale;
+        b.rows[3][i] = yx * scale, b.rows[4][i] = yy * scale, b.rows[5][i] = yz * scale;
+        b.rows[6][i] = zx * scale, b.rows[7][i] = zy * scale, b.rows[8][i] = zz * scale;
+    }
+    reach_into_view(frustum, b.center_x.data(), b.center_y.data(), b.center_z.data(), b.radius_m.data(),
+                    b.reach_m.data(), count);
+}
+
+void make_room(SeenPlants& seen, size_t count) {
+    if (seen.seed.size() >= count) return;
+    for (auto* column : {&seen.direction_x, &seen.direction_y, &seen.direction_z, &seen.pixels_per_meter})
+        column->resize(count);
+    seen.seed.resize(count);
+    seen.in_cells.resize(count);
+    seen.instances.resize(count);
+}
+
+class Viewer {
+  public:
+    Viewer(const PlantRun& run, const SceneGeometry& geometry, const Frustum& frustum, const Horizon* horizon,
+           float spread_px, SeenPlants& seen)
+        : run_(run),
+          geometry_(geometry),
+          frustum_(frustum),
+          horizon_(horizon),
+          spread_px_(spread_px),
+          seen_(seen) {}
+
+    // Plants of one model.
+    void look_at(size_t first, size_t count, uint32_t model_index) {
+        const DrawModel& model = geometry_.models[model_index];
+        const size_t found = load_block(run_, first, count, model, frustum_, block_);
+        look_at_block(model, frustum_, found, block_);
+        const uint32_t first_seen = seen_.plant_count;
+        for (size_t i = 0; i < found; ++i) {
+            if (!run_.inside && block_.reach_m[i] < 0.0f) continue;
+            if (horizon_ && hidden(i)) {
+                ++seen_.hidden_plants;
+                continue;
+            }
+            add(i, model);
+        }
+        const uint32_t count_seen = seen_.plant_count - first_seen;
+        seen_.full_triangles += uint64_t(count_seen) * model.triangle_count;
+        if (count_seen == 0) return;
+        if (!seen_.groups.empty()) {
+            SeenGroup& last = seen_.groups.back();
+            if (last.model == model_index && seen_.plant_count - last.first <= k_plants_a_batch) {
+                last.end = seen_.plant_count;
+                return;
+            }
+        }
+        seen_.groups.push_back({model_index, first_seen, seen_.plant_count});
     }
 
   private:
-    float x_[k_plants_a_run], y_[k_plants_a_run], z_[k_plants_a_run];
-    float radius_m_[k_plants_a_run],
-        reach_m_[k_plants_a_run];  // reach: into the view, past the nearest plane
-    uint16_t found_[k_plants_a_run];
+    vec3 center(size_t i) const { return {block_.center_x[i], block_.center_y[i], block_.center_z[i]}; }
+
+    bool hidden(size_t i) const {
+        return horizon_->hidden({center(i) - block_.radius_m[i], center(i) + block_.radius_m[i]}, spread_px_);
+    }
+
+    void add(size_t i, const DrawModel& model) {
+        const uint32_t at = seen_.plant_count++;
+        seen_.direction_x[at] = block_.direction_x[i];
+        seen_.direction_y[at] = block_.direction_y[i];
+        seen_.direction_z[at] = block_.direction_z[i];
+        seen_.pixels_per_meter[at] = block_.pixels_per_meter[i];
+        seen_.seed[at] = run_.models[block_.index[i]].seed;
+        WorkInstance& instance = seen_.instances[at];
+        const float foot[3] = {block_.x[i], block_.y[i], block_.z[i]};
+        for (size_t row = 0; row < 3; ++row) {
+            for (size_t column = 0; column < 3; ++column)
+                instance.rows[row][column] = block_.rows[3 * row + column][i];
+            instance.rows[row][3] = foot[row];
+        }
+        const float own_place =
+            model.has_cells ? share_of_own_place(block_.distance_m[i], block_.radius_m[i]) : 0.0f;
+        seen_.in_cells[at] = own_place > 0.0f;
+        if (own_place > 0.0f) add_cells(i, at, model, own_place);
+    }
+
+    void add_cells(size_t i, uint32_t plant, const DrawModel& model, float own_place) {
+        const mat3 rotation = rotation_matrix(run_.turns[block_.index[i]]);
+        const vec3 foot(block_.x[i], block_.y[i], block_.z[i]);
+        const float scale = block_.scale[i];
+        for (uint32_t part = model.first_part; part < model.first_part + model.part_count; ++part) {
+            const PartCells cells = geometry_.part_cells[part];
+            for (uint32_t cell = cells.first; cell < cells.first + cells.count; ++cell) {
+                const PartSphere& sphere = geometry_.part_spheres[cell];
+                const vec3 at = foot + rotation * (sphere.center_plant * scale);
+                const float radius_m = sphere.radius_m * scale;
+                if (!run_.inside && !sees_sphere(frustum_, at, radius_m)) continue;
+                const vec3 from = center(i) + (at - center(i)) * own_place;
+                seen_.cells.push_back(
+                    {plant, cell, cell - model.first_part,
+                     view_of(frustum_, rotation, from, glm::length(from), radius_m, scale)});
+            }
+        }
+    }
+
+    const PlantRun& run_;
+    const SceneGeometry& geometry_;
+    const Frustum& frustum_;
+    const Horizon* horizon_;
+    float spread_px_;
+    SeenPlants& seen_;
+    Block block_;
 };
 
 }  // namespace
 
 void see_plants(const PlantRun& run, const SceneGeometry& geometry, const Frustum& frustum,
-                const FrameSettings& settings, const Horizon* horizon, float spread_px, SeenPlants& seen) {
-    seen.plants.clear();
-    seen.parts.clear();
+                const Horizon* horizon, float spread_px, SeenPlants& seen) {
+    seen.plant_count = 0;
+    seen.groups.clear();
+    seen.cells.clear();
     seen.hidden_plants = 0;
     seen.full_triangles = 0;
-    auto add = [&](uint32_t part, const PlantView& view) {
-        seen.parts.push_back({part, settings.level_of_detail
-                                        ? project_part(geometry.parts[part], view, settings)
-                                        : PartProjection{}});
-    };
-    auto look_at = [&](size_t i) {
-        const PlantPosition& place = run.positions[i];
-        const DrawModel& model = geometry.models[run.models[i].model];
-        const mat3 rotation = rotation_matrix(run.turns[i]);
-        const vec3 position = run.origin_camera + vec3(place.x_tile, place.y_tile, place.z_tile);
-        const vec3 center = position + rotation * (model.center_plant * place.scale);
-        const float radius_m = model.radius_m * place.scale;
-        if (!run.inside && !sees_sphere(frustum, center, radius_m)) return;
-        if (horizon && horizon->hidden({center - radius_m, center + radius_m}, spread_px)) {
-            ++seen.hidden_plants;
-            return;
-        }
-        seen.full_triangles += model.triangle_count;
-
-        const float distance_m = glm::length(center);
-        const PlantView plant_view = view_of(frustum, rotation, center, distance_m, radius_m, place.scale);
-        const float own_place = share_of_own_place(model, distance_m, place.scale);
-        for (uint32_t part = model.first_part; part < model.first_part + model.part_count; ++part) {
-            const PartCells cells = geometry.part_cells[part];
-            if (cells.count == 0 || own_place == 0.0f) {
-                add(part, plant_view);
-                continue;
-            }
-            for (uint32_t cell = cells.first; cell < cells.first + cells.count; ++cell) {
-                const PartSphere& sphere = geometry.part_spheres[cell];
-                const vec3 at = position + rotation * (sphere.center_plant * place.scale);
-                const float cell_radius_m = sphere.radius_m * place.scale;
-                if (!run.inside && !sees_sphere(frustum, at, cell_radius_m)) continue;
-                const vec3 from = center + (at - center) * own_place;
-                add(cell, view_of(frustum, rotation, from, glm::length(from), cell_radius_m, place.scale));
-            }
-        }
-        seen.plants.push_back({instance_of(rotation, place.scale, position), plant_view, model.first_part,
-                               run.models[i], uint32_t(seen.parts.size())});
-    };
-    NearView near;
-    for (size_t first = 0; first < run.positions.size(); first += k_plants_a_run) {
-        const size_t count = std::min<size_t>(k_plants_a_run, run.positions.size() - first);
-        for (uint16_t i : run.inside ? near.all(count) : near.find(run, first, count, geometry, frustum))
-            look_at(first + i);
+    make_room(seen, std::max<size_t>(run.positions.size(), k_plants_a_run));
+    Viewer viewer(run, geometry, frustum, horizon, spread_px, seen);
+    const std::span<const PlantModel> models = run.models;
+    for (size_t first = 0; first < models.size();) {
+        size_t end = first + 1;
+        while (end < models.size() && end - first < k_block && models[end].model == models[first].model)
+            ++end;
+        viewer.look_at(first, end - first, models[first].model);
+        first = end;
     }
 }
 
 void measure_plants(const SeenPlants& seen, const SceneGeometry& geometry, const FrameSettings& settings,
                     BudgetHistogram& histogram) {
-    each_part(seen, geometry, settings,
-              [&](const SeenPlant&, uint32_t part, const PartProjection& projected) {
-                  add_part(histogram, geometry.parts[part], projected, settings);
-              });
+    each_part(
+        seen, geometry, settings,
+        [&](const SeenPart& many) {
+            for (size_t i = 0; i < many.left_out.size(); ++i)
+                if (!many.left_out[i])
+                    add_part(histogram, geometry.parts[many.part], many.rule, many.demands[i], settings);
+        },
+        [&](uint32_t, uint32_t part, uint32_t, const PartRule& rule, const PartDemand& demand) {
+            add_part(histogram, geometry.parts[part], rule, demand, settings);
+        });
 }
 
 }  // namespace coppice

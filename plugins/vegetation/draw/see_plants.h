@@ -1,5 +1,6 @@
-// What is in view of a run of plants: culled and projected once, whatever d'. A budget measures it, perhaps several
-// times, and then it is drawn; both go over it by each_part, so that what is drawn is what was measured.
+// What is in view of a run of plants: culled and looked at once, whatever d'. A budget measures it, perhaps several
+// times, and then it is drawn; both go over it by each_part, so that what is drawn is what was measured. Plants of one
+// model are a group, and what is said of each of them stands in columns, so that loops over them are made vectors of.
 #pragma once
 #include "plugins/vegetation/cull/horizon.h"
 #include "plugins/vegetation/cull/list_tiles.h"
@@ -9,53 +10,86 @@
 
 namespace coppice {
 
-// A part in one piece, or an octree cell of one that is near.
-struct SeenPart {
-    uint32_t part;  // of the scene's geometry
-    PartProjection projected;
+// Plants [first, end) of a run's, of one model; at most k_plants_a_batch.
+struct SeenGroup {
+    uint32_t model, first, end;
 };
 
-struct SeenPlant {
-    WorkInstance instance;
+// An octree cell of a plant so near that it is looked at from the cell's own place.
+struct SeenCell {
+    uint32_t plant, part, part_of_model;
     PlantView view;
-    uint32_t first_part_of_model;
-    PlantModel model;
-    uint32_t part_end;  // its parts end here, and begin where those of the plant before end
 };
 
-// Kept from frame to frame, so that a warm frame allocates nothing.
+// Kept from frame to frame, so that a warm frame allocates nothing. Columns are as long as the run may be, and hold
+// plant_count plants.
 struct SeenPlants {
-    std::vector<SeenPlant> plants;
-    std::vector<SeenPart> parts;
+    uint32_t plant_count = 0;
+    std::vector<float> direction_x, direction_y, direction_z, pixels_per_meter;  // PlantView
+    std::vector<uint32_t> seed;                                                  // PlantModel::seed
+    std::vector<uint8_t> in_cells;  // 1: parts that have cells are drawn as these
+    std::vector<WorkInstance> instances;
+    std::vector<SeenGroup> groups;
+    std::vector<SeenCell> cells;
     uint32_t hidden_plants = 0;   // in view, but behind the ground
     uint64_t full_triangles = 0;  // had all been drawn
+
+    PlantViews views(const SeenGroup& group) const {
+        auto part = [&](const std::vector<float>& all) {
+            return std::span(all).subspan(group.first, group.end - group.first);
+        };
+        return {part(direction_x), part(direction_y), part(direction_z), part(pixels_per_meter)};
+    }
 };
 
 // Any thread. horizon: for runs that may have plants behind it (PlantRun::may_be_hidden); nullptr: nothing is hidden.
 // spread_px: widest_spread_px.
 void see_plants(const PlantRun& run, const SceneGeometry& geometry, const Frustum& frustum,
-                const FrameSettings& settings, const Horizon* horizon, float spread_px, SeenPlants& seen);
+                const Horizon* horizon, float spread_px, SeenPlants& seen);
 
-// Calls visit(plant, part, projected) for all that is drawn at the settings' d': cells in place of a part whose own points
-// do not suffice far away.
-template <class Visit>
+// A part of a group's plants: those whose left_out is 0.
+struct SeenPart {
+    uint32_t first_plant;
+    uint32_t part, part_of_model;  // of the scene's geometry, of the model's
+    const PartRule& rule;
+    const PartDemands& demands;
+    std::span<const uint8_t> left_out;  // as long as the group
+};
+
+// Visits all that is drawn at the settings' d': many(SeenPart) of parts in one piece; cell(plant, part, part_of_model, rule, demand)
+// of octree cells in place of a part, of plants that are near and where the part's own points or lines do not suffice.
+template <class Many, class Cell>
 void each_part(const SeenPlants& seen, const SceneGeometry& geometry, const FrameSettings& settings,
-               Visit&& visit) {
-    uint32_t next = 0;
-    for (const SeenPlant& plant : seen.plants)
-        for (; next < plant.part_end; ++next) {
-            const SeenPart& seen_part = seen.parts[next];
-            const PackedPart& part = geometry.parts[seen_part.part];
-            const PartCells cells = geometry.part_cells[seen_part.part];
-            // Only cells have points to go on with where the part's are used up, and blend.
-            if (cells.count == 0 || !settings.level_of_detail ||
-                !draws_triangles(part, seen_part.projected, settings)) {
-                visit(plant, seen_part.part, seen_part.projected);
-                continue;
+               Many&& many, Cell&& cell) {
+    PartDemands demands;
+    PlantColumn<uint8_t> left_out;
+    auto visit_cell = [&](uint32_t plant, uint32_t part, uint32_t part_of_model, const PlantView& view) {
+        const PackedPart& of = geometry.parts[part];
+        const PartRule rule(of, settings);
+        cell(plant, part, part_of_model, rule, rule.demand(project_part(of, view, settings)));
+    };
+    for (const SeenGroup& group : seen.groups) {
+        const DrawModel& model = geometry.models[group.model];
+        const PlantViews views = seen.views(group);
+        for (uint32_t part = model.first_part; part < model.first_part + model.part_count; ++part) {
+            const PartRule rule(geometry.parts[part], settings);
+            const PartCells cells = geometry.part_cells[part];
+            rule.demand(geometry.parts[part], views, settings, demands);
+            for (size_t i = 0; i < views.size(); ++i) {
+                left_out[i] = cells.count > 0 && seen.in_cells[group.first + i];
+                // Only cells have points to go on with where the part's are used up, and blend.
+                if (cells.count == 0 || left_out[i] || !settings.level_of_detail ||
+                    !rule.draws_triangles(demands[i]))
+                    continue;
+                left_out[i] = 1;
+                for (uint32_t c = cells.first; c < cells.first + cells.count; ++c)
+                    visit_cell(group.first + uint32_t(i), c, c - model.first_part, views[i]);
             }
-            for (uint32_t cell = cells.first; cell < cells.first + cells.count; ++cell)
-                visit(plant, cell, project_part(geometry.parts[cell], plant.view, settings));
+            many(SeenPart{group.first, part, part - model.first_part, rule, demands,
+                          std::span(left_out).first(views.size())});
         }
+    }
+    for (const SeenCell& near : seen.cells) visit_cell(near.plant, near.part, near.part_of_model, near.view);
 }
 
 // What draw_plants will draw.

@@ -25,31 +25,27 @@ WorkInstance instance_of(const mat3& rotation, float scale, vec3 position_camera
 
 void WorkPart::clear() {
     triangles = lines = points = 0;
-    instances_.clear();
-    entries_.clear();
-    bins_.clear();
+    own_instances_.clear();
+    instances_ = {};
+    entry_count_ = 0;
     counts_ = {};
 }
 
 uint32_t WorkPart::add_instance(const WorkInstance& instance) {
-    instances_.push_back(instance);
-    return uint32_t(instances_.size() - 1);
-}
-
-void WorkPart::push(size_t bin, const WorkEntry& entry) {
-    entries_.push_back(entry);
-    bins_.push_back(uint8_t(bin));
-    ++counts_[bin];
+    own_instances_.push_back(instance);
+    instances_ = own_instances_;
+    return uint32_t(own_instances_.size() - 1);
 }
 
 void WorkPart::add_run(WorkKind kind, WorkEntry entry, uint32_t vertices_a_primitive) {
     if (entry.count == 0) return;
     const size_t groups = size_t(kind) * k_bins_of_kind;
-    if (entry.count <= k_primitives_a_lane) return push(groups + 1 + lane_bucket(entry.count), entry);
+    make_room(entry.count / k_primitives_a_group + 1);
+    if (entry.count <= k_primitives_a_lane) return write(groups + 1 + lane_bucket(entry.count), entry);
     uint32_t left = entry.count;
     while (left > 0) {
         entry.count = std::min(left, k_primitives_a_group);
-        push(groups, entry);
+        write(groups, entry);
         entry.first_vertex += entry.count * vertices_a_primitive;
         entry.first_owner += entry.count;
         left -= entry.count;
@@ -59,7 +55,7 @@ void WorkPart::add_run(WorkKind kind, WorkEntry entry, uint32_t vertices_a_primi
 WorkPart::BinCounts WorkPart::count_with(uint32_t instance_count) const {
     if (instance_count >= instances_.size()) return counts_;
     BinCounts counts{};
-    for (size_t e = 0; e < entries_.size(); ++e)
+    for (size_t e = 0; e < entry_count_; ++e)
         counts[bins_[e]] += (entries_[e].instance & ~k_ground_bit) < instance_count;
     return counts;
 }
@@ -97,18 +93,57 @@ void WorkPart::add(const PartGeometry& geometry, const PartChoice& choice, uint3
                   std::bit_cast<uint32_t>(choice.turned_share), 0, 0.0f},
                  2, start, geometry.line_count, choice.lines, false);
     if (choice.points == 0) return;
+    WorkEntry entry;
+    const WorkKind kind = entry_of_points(geometry, choice, entry);
+    entry.instance = instance;
+    add_from(kind, entry, 1, start, geometry.point_count, choice.points, true);
+}
+
+WorkKind WorkPart::entry_of_points(const PartGeometry& geometry, const PartChoice& choice, WorkEntry& entry) {
+    entry = {geometry.first_point,
+             0,
+             0,
+             geometry.first_owner,
+             choice.splat_px,
+             choice.point_owner_min,
+             std::bit_cast<uint32_t>(choice.density_limit_m2),
+             choice.mean_facing};
     // A side a rounding error over a whole pixel must not cost four times the pixels.
     constexpr float k_slack = 1.0e-3f;
-    const float side = choice.splat_px;
-    const WorkKind kind = choice.point_owner_min > 0 || choice.density_limit_m2 > 0.0f
-                              ? WorkKind::points_blend
-                          : side <= 1.0f + k_slack ? WorkKind::points_1
-                          : side <= 2.0f + k_slack ? WorkKind::points_2
-                                                   : WorkKind::points_any;
-    add_from(kind,
-             {geometry.first_point, 0, instance, geometry.first_owner, side, choice.point_owner_min,
-              std::bit_cast<uint32_t>(choice.density_limit_m2), choice.mean_facing},
-             1, start, geometry.point_count, choice.points, true);
+    return choice.point_owner_min > 0 || choice.density_limit_m2 > 0.0f ? WorkKind::points_blend
+           : choice.splat_px <= 1.0f + k_slack                          ? WorkKind::points_1
+           : choice.splat_px <= 2.0f + k_slack                          ? WorkKind::points_2
+                                                                        : WorkKind::points_any;
+}
+
+void WorkPart::add(const PartGeometry& geometry, const PartRule& rule, const PartChoices& choices,
+                   std::span<const uint8_t> left_out, uint32_t first_instance, float start) {
+    using Form = PartRule::Form;
+    // Short runs of points from the beginning, which most are, differ in number and instance only.
+    WorkEntry of_points, of_line_points;
+    auto first_bin = [](WorkKind kind) { return size_t(kind) * k_bins_of_kind + 1; };
+    const size_t bin_of_points =
+        first_bin(entry_of_points(geometry, rule.expand({Form::points, 1, 0.0f}), of_points));
+    const size_t bin_of_line_points =
+        first_bin(entry_of_points(geometry, rule.expand({Form::line_points, 1, 0.0f}), of_line_points));
+    for (size_t i = 0; i < left_out.size(); ++i) {
+        if (left_out[i]) continue;
+        const Form form = choices.form[i];
+        const uint32_t count = choices.count[i];
+        if (count == 0 && form != Form::triangles && form != Form::blend) continue;
+        const uint32_t instance = first_instance + uint32_t(i);
+        const bool is_points = form == Form::points;
+        if (!(is_points || form == Form::line_points) || count > k_primitives_a_lane || start > 0.0f) {
+            add(geometry, rule.expand(choices[i]), instance, start);
+            continue;
+        }
+        make_room(1);
+        WorkEntry entry = is_points ? of_points : of_line_points;
+        entry.count = count;
+        entry.instance = instance;
+        write((is_points ? bin_of_points : bin_of_line_points) + lane_bucket(count), entry);
+        points += count;
+    }
 }
 
 void WorkList::begin(size_t part_count) {
@@ -121,7 +156,7 @@ WorkList::Size WorkList::size() const {
     Size size;
     for (size_t i = 0; i < part_count_; ++i) {
         size.instances += uint32_t(parts_[i].instances_.size());
-        size.entries += uint32_t(parts_[i].entries_.size());
+        size.entries += uint32_t(parts_[i].entry_count_);
     }
     return size;
 }
@@ -161,7 +196,7 @@ WorkList::Layout WorkList::gather(std::span<WorkInstance> instances, std::span<W
             if (place.instance_count > 0)
                 std::memcpy(&instances[place.first_instance], part.instances_.data(),
                             place.instance_count * sizeof(WorkInstance));
-            for (size_t e = 0; e < part.entries_.size(); ++e) {
+            for (size_t e = 0; e < part.entry_count_; ++e) {
                 WorkEntry entry = part.entries_[e];
                 if ((entry.instance & ~k_ground_bit) >= place.instance_count) continue;
                 const uint32_t at = place.next[part.bins_[e]]++;

@@ -2,6 +2,7 @@
 // Jobs fill lists of their own; gather() lays them out one behind the other, so the result does not depend on the
 // number of threads.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -57,8 +58,13 @@ class WorkPart {
     void clear();
     // Index of the instance within this part, for add().
     uint32_t add_instance(const WorkInstance& instance);
+    // All there are, which stay where they are until they have been gathered; their indices are those of the span.
+    void share_instances(std::span<const WorkInstance> instances) { instances_ = instances; }
     // start in [0, 1): where in their lists the points and lines begin; they go on at the lists' beginning.
     void add(const PartGeometry& geometry, const PartChoice& choice, uint32_t instance, float start = 0.0f);
+    // Choice i of as many as there are in left_out, where that is 0, for instance first_instance + i.
+    void add(const PartGeometry& geometry, const PartRule& rule, const PartChoices& choices,
+             std::span<const uint8_t> left_out, uint32_t first_instance, float start);
     void add_ground(uint32_t first_vertex, uint32_t triangle_count, uint32_t instance);
 
     uint64_t triangles = 0, lines = 0, points = 0;
@@ -69,7 +75,19 @@ class WorkPart {
     void add_run(WorkKind kind, WorkEntry entry, uint32_t vertices_a_primitive);
     void add_from(WorkKind kind, WorkEntry entry, uint32_t vertices_a_primitive, float start, uint32_t stored,
                   uint32_t count, bool has_owners);
-    void push(size_t bin, const WorkEntry& entry);
+    // Of points, all but their number and instance.
+    static WorkKind entry_of_points(const PartGeometry& geometry, const PartChoice& choice, WorkEntry& entry);
+    void make_room(size_t count) {
+        if (entries_.size() - entry_count_ >= count) return;
+        entries_.resize(std::max(2 * entries_.size(), entry_count_ + count));
+        bins_.resize(entries_.size());
+    }
+    // Requires room.
+    void write(size_t bin, const WorkEntry& entry) {
+        entries_[entry_count_] = entry;
+        bins_[entry_count_++] = uint8_t(bin);
+        ++counts_[bin];
+    }
 
     // Of each kind first the groups, then the lanes' buckets: the order of a layout.
     static constexpr size_t k_bins_of_kind = 1 + k_lane_buckets;
@@ -78,9 +96,11 @@ class WorkPart {
     // Entries whose instance is among the first instance_count.
     BinCounts count_with(uint32_t instance_count) const;
 
-    std::vector<WorkInstance> instances_;
-    std::vector<WorkEntry> entries_;
-    std::vector<uint8_t> bins_;  // of each entry
+    std::vector<WorkInstance> own_instances_;
+    std::span<const WorkInstance> instances_;
+    size_t entry_count_ = 0;
+    std::vector<WorkEntry> entries_;  // and room for more
+    std::vector<uint8_t> bins_;       // of each entry
     BinCounts counts_{};
 };
 

@@ -135,39 +135,31 @@ double vertices_at(const BudgetHistogram& histogram, float sample_distance_px) {
     return sums.vertices_at(double(px2));
 }
 
-void add_part(BudgetHistogram& histogram, const PackedPart& part, const PartProjection& projected,
-              const FrameSettings& settings) {
+void add_part(BudgetHistogram& histogram, const PackedPart& part, const PartRule& rule,
+              const PartDemand& demand, const FrameSettings& settings) {
     const float all = 3.0f * float(part.triangle_count);
     if (!settings.level_of_detail) return histogram.add_always(all);
-    float area_px2 = projected.area_px2;
-    if (part.triangle_count == 0 || !(area_px2 > 0.0f)) return;
-    const bool measured = settings.projection == ProjectionMode::measured;
-    if (part.kind == PackedPartKind::points) {
-        const float d = std::max(settings.sample_distance_px, 1.0e-3f);
-        const float stored = float(part.point_count);
+    if (part.triangle_count == 0 || !(demand.area_px2 > 0.0f)) return;
+    if (rule.is_points()) {
         if (part.point_count == 0) return histogram.add_always(all);
-        if (measured) area_px2 *= gain_at(part, area_px2 / (stored * d * d));
-        const float wanted = settings.splat_factor * part.importance * area_px2;
-        if (settings.blend) return histogram.add_points(wanted, stored, all);
-        return histogram.add_switching_points(wanted, stored, all);
+        const float wanted = rule.at_1px(rule.point_count(demand.area_px2));
+        if (settings.blend) return histogram.add_points(wanted, float(part.point_count), all);
+        return histogram.add_switching_points(wanted, float(part.point_count), all);
     }
-    const float length_px = projected.length_px;
-    if (part.line_count == 0 || !(length_px > 0.0f)) return histogram.add_always(all);
-    const bool held = settings.line_sample_distance_px > 0.0f;
-    const float d = std::max(held ? settings.line_sample_distance_px : settings.sample_distance_px, 1.0e-3f);
-    if (measured) area_px2 *= gain_at(part, area_px2 / (length_px * d));
-    const float all_lines_px = part.importance * area_px2 / length_px;  // the d' of q = 1
-    const float per_meter = projected.pixels_per_meter;
-    const float points_at_1px = line_points_at_1px(part, per_meter, settings);
-    const float points_from_px = line_points_from_px(part, points_at_1px, per_meter);
-    if (held) {
-        if (d < all_lines_px || d <= part.line_error_m * per_meter) return histogram.add_always(all);
+    if (part.line_count == 0 || !(demand.length_px > 0.0f)) return histogram.add_always(all);
+    const float all_lines_px = part.importance * demand.area_px2 / demand.length_px;  // the d' of q = 1
+    const float error_px = part.line_error_m * demand.pixels_per_meter;
+    const float points_from_px = rule.line_points_from_px(demand);
+    if (settings.line_sample_distance_px > 0.0f) {  // lines are held there
+        const float d = std::max(settings.line_sample_distance_px, 1.0e-3f);
+        if (d < all_lines_px || d <= error_px) return histogram.add_always(all);
         if (d >= points_from_px)
-            return histogram.add_saturating(points_at_1px, float(line_point_count(part)), 1.0f);
+            return histogram.add_saturating(rule.at_1px(demand.line_points), float(line_point_count(part)),
+                                            1.0f);
         return histogram.add_always(2.0f * float(part.line_count) * all_lines_px / d);
     }
     histogram.add_lines_and_points(2.0f * float(part.line_count) * all_lines_px,
-                                   std::max(all_lines_px, part.line_error_m * per_meter), all, points_at_1px,
+                                   std::max(all_lines_px, error_px), all, rule.at_1px(demand.line_points),
                                    points_from_px);
 }
 

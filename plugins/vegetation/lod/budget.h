@@ -24,7 +24,7 @@ class BudgetHistogram {
     BudgetHistogram() : bins_(k_bin_count) {}
     void clear() { std::fill(bins_.begin(), bins_.end(), Bin{}); }
 
-    // Points that blend into triangles (choose_points): with p = wanted_at_1px / d'^2, p vertices up to all the stored
+    // Points that blend into triangles (PartRule::choose_points): with p = wanted_at_1px / d'^2, p vertices up to all the stored
     // ones, and from there evenly to `most` at p = 1.5 stored.
     void add_points(float wanted_at_1px, float stored, float most) {
         if (!(wanted_at_1px > 0.0f) || !(stored > 0.0f) || !(most >= 0.0f)) return;
@@ -42,7 +42,7 @@ class BudgetHistogram {
         if (!(wanted_at_1px > 0.0f) || !(stored > 0.0f) || !(most >= 0.0f)) return;
         add_by_area(wanted_at_1px / std::clamp(stored, 1.0f, k_most_vertices), wanted_at_1px, most);
     }
-    // Lines (choose_lines): wanted_at_1px / d' vertices, two a line; at d' <= triangles_below_px all triangles, `most`.
+    // Lines (PartRule::choose_lines): wanted_at_1px / d' vertices, two a line; at d' <= triangles_below_px all triangles, `most`.
     void add_lines(float wanted_at_1px, float triangles_below_px, float most) {
         if (!(wanted_at_1px > 0.0f) || !(most >= 0.0f)) return;
         const float below_px = std::max(0.0f, triangles_below_px);  // 0 for NaN
@@ -51,7 +51,7 @@ class BudgetHistogram {
         bin.most += quantise(most);
         bin.per_length += quantise(wanted_at_1px * power_of_two(-halve(exponent)));
     }
-    // Lines up to d' = points_from_px, and from there points_at_1px / d'^2 (choose_line_points).
+    // Lines up to d' = points_from_px, and from there points_at_1px / d'^2 (PartRule).
     void add_lines_and_points(float wanted_at_1px, float triangles_below_px, float most, float points_at_1px,
                               float points_from_px) {
         if (!(points_at_1px > 0.0f) || !(points_from_px < 1.0e15f))
@@ -144,11 +144,13 @@ double vertices_at(const BudgetHistogram& histogram, float sample_distance_px);
 
 // What choose_part will draw, in the mean over chance. Coverage gains change with d' by a tenth or two an octave; they are
 // taken at settings.sample_distance_px, so solve again where the d' found is far from that: settle_sample_distance.
-void add_part(BudgetHistogram& histogram, const PackedPart& part, const PartProjection& projected,
-              const FrameSettings& settings);
+// rule: of part and settings.
+void add_part(BudgetHistogram& histogram, const PackedPart& part, const PartRule& rule,
+              const PartDemand& demand, const FrameSettings& settings);
 inline void add_part(BudgetHistogram& histogram, const PackedPart& part, const PlantView& view,
                      const FrameSettings& settings) {
-    add_part(histogram, part, project_part(part, view, settings), settings);
+    const PartRule rule(part, settings);
+    add_part(histogram, part, rule, rule.demand(project_part(part, view, settings)), settings);
 }
 // What choose_cloud will draw, to 1 %: its points over their density by straight lines between counts a factor of 0.7
 // apart.

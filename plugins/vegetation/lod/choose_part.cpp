@@ -2,17 +2,11 @@
 
 #include <algorithm>
 #include "plugins/vegetation/plant/line_points.h"
+#include "runtime/core/vector_clones.h"
 
 namespace coppice {
 namespace {
 
-uint32_t round_by_chance(float count, float chance, uint32_t limit) {
-    float rounded = std::floor(count + chance);
-    return rounded >= float(limit) ? limit : uint32_t(std::max(rounded, 0.0f));
-}
-
-// Seen this much on edge, nothing is left to weigh.
-constexpr float k_least_facing = 0.02f;
 constexpr float k_widest_line_px = 64.0f;  // raster_lines.comp
 
 float sample_distance(const FrameSettings& settings) {
@@ -24,96 +18,166 @@ float line_sample_distance(const FrameSettings& settings) {
                                                    : sample_distance(settings);
 }
 
-// |n . v| in the mean over the part's surface; of a closed one the half that turns away has the same.
-float mean_facing(const PackedPart& part, float area_px2, float pixels_per_meter) {
-    const float sides = part.flags & k_part_closed ? 2.0f : 1.0f;
-    const float surface_px2 = part.area_m2 * pixels_per_meter * pixels_per_meter;
-    return surface_px2 > 0.0f ? std::min(sides * area_px2 / surface_px2, 1.0f) : 0.0f;
+}  // namespace
+
+PartRule::PartRule(const PackedPart& part, const FrameSettings& settings)
+    : is_points_(part.kind == PackedPartKind::points),
+      always_triangles_(!settings.level_of_detail || part.triangle_count == 0),
+      d_px_(sample_distance(settings)),
+      line_d_px_(line_sample_distance(settings)),
+      importance_(part.importance),
+      points_(float(part.point_count)),
+      lines_(std::min(float(part.line_count), k_most_count)),
+      line_points_(std::min(float(coppice::line_point_count(part)), k_most_count)),
+      triangle_count_(part.triangle_count),
+      point_count_(part.point_count),
+      line_count_(part.line_count) {
+    const bool measured = settings.projection == ProjectionMode::measured;
+    if (measured)
+        gains_ = part.coverage_gain;
+    else
+        gains_.fill(1.0f);
+    points_per_px2_ = settings.splat_factor * importance_ / (d_px_ * d_px_);
+    per_fill_px2_ = 1.0f / (points_ * d_px_ * d_px_);
+    triangles_from_ = settings.blend ? 1.5f * points_ : points_;
+    blended_per_point_ = 2.0f * float(part.triangle_count) / points_;
+    line_error_m_ = part.line_error_m;
+    mean_line_length_m_ = part.line_length_m / lines_;
+    const bool weighs = settings.weigh_by_facing;
+    line_points_area_m2_ = measured && weighs ? mean_projected_area_m2(part) : 0.0f;
+    const float length_m = mean_projected_length_m(part);
+    if (!(length_m > 0.0f)) line_points_area_m2_ = 0.0f;
+    line_points_fill_m_ = line_points_area_m2_ / (length_m * d_px_);
+    // |n . v| in the mean over the surface that asks for points (project_part); of a closed one the half that turns away
+    // has the same.
+    if (weighs) mean_facing_ = is_points_ && !measured && part.flags & k_part_closed ? 1.0f : 0.5f;
+    // The squares of p points add up to c_p A'.
+    splat_px_ = d_px_ / std::sqrt(importance_ * (weighs ? mean_facing_ : 1.0f));
+    line_width_px_ = line_d_px_ / importance_;
 }
 
-void weigh_by_facing(PartChoice& choice, float facing, const FrameSettings& settings) {
-    if (!settings.weigh_by_facing || facing <= k_least_facing) return;
-    choice.mean_facing = facing;
-    choice.splat_px /= std::sqrt(facing);
+PartChoice PartRule::expand(const Choice& choice) const {
+    PartChoice out;
+    switch (choice.form) {
+        case Form::triangles:
+            out.triangles = triangle_count_;
+            return out;
+        case Form::lines:
+            out.lines = std::min(choice.count, line_count_);
+            out.line_width_px = line_width_px_;
+            out.turned_share = 1.0f - std::sqrt(choice.asked);
+            return out;
+        case Form::line_points:
+            out.points = choice.count;
+            out.density_limit_m2 = INFINITY;
+            out.splat_px = splat_px_;
+            break;
+        case Form::points:
+            out.points = std::min(choice.count, point_count_);
+            out.splat_px = splat_px_;
+            break;
+        case Form::blend:
+            out.points = point_count_;
+            out.triangles = out.point_owner_min = std::min(choice.count, triangle_count_);
+            out.skipped_points =
+                uint32_t(uint64_t(point_count_) * out.triangles / std::max(triangle_count_, 1u));
+            out.splat_px = splat_px_ * std::sqrt(choice.asked / points_);
+            break;
+    }
+    out.mean_facing = mean_facing_;
+    return out;
 }
 
-PartChoice all_triangles(const PackedPart& part) {
-    PartChoice choice;
-    choice.triangles = part.triangle_count;
-    return choice;
+PartDemand PartRule::demand(const PartProjection& projected) const {
+    const float per_meter_px = projected.pixels_per_meter, area_px2 = projected.area_px2;
+    auto gain = [this](float fill) { return gain_at(gains_, gain_place(fill)); };
+    if (is_points_) return {per_meter_px, area_px2 * gain(area_px2 * per_fill_px2_), 0.0f, 0.0f};
+    return {per_meter_px, area_px2 * gain(area_px2 / (projected.length_px * line_d_px_)), projected.length_px,
+            line_points(per_meter_px, gain(line_points_fill_m_ * per_meter_px))};
+}
+
+namespace {
+
+// Loops over columns, apart so that compilers make vectors of them.
+
+COPPICE_VECTOR_CLONES
+void gains_at(const std::array<float, k_gain_levels>& gains, const PlantColumn<float>& fill, size_t count,
+              PlantColumn<float>& out) {
+    PlantColumn<int32_t> level;
+    PlantColumn<float> share;
+    for (size_t i = 0; i < count; ++i) {
+        const GainPlace place = gain_place(fill[i]);
+        level[i] = place.level;
+        share[i] = place.share;
+    }
+    for (size_t i = 0; i < count; ++i) out[i] = gain_at(gains, {level[i], share[i]});
+}
+
+COPPICE_VECTOR_CLONES
+void multiply(const float* a, const float* b, size_t count, float* out) {
+    for (size_t i = 0; i < count; ++i) out[i] = a[i] * b[i];
+}
+
+COPPICE_VECTOR_CLONES
+void multiply(const float* a, float b, size_t count, float* out) {
+    for (size_t i = 0; i < count; ++i) out[i] = a[i] * b;
+}
+
+COPPICE_VECTOR_CLONES
+void choose_all(const PartRule& rule, const PartDemands& demands, const float* chances, size_t count,
+                PartRule::Form* forms, uint32_t* counts, float* asked) {
+    const PartRule local = rule;  // which what is written cannot change
+    const float *per_meter_px = demands.pixels_per_meter.data(), *area_px2 = demands.area_px2.data(),
+                *length_px = demands.length_px.data(), *line_points = demands.line_points.data();
+    if (local.is_points())
+        for (size_t i = 0; i < count; ++i) {
+            const PartRule::Choice choice =
+                local.choose_points({per_meter_px[i], area_px2[i], 0.0f, 0.0f}, chances[i]);
+            forms[i] = choice.form;
+            counts[i] = choice.count;
+            asked[i] = choice.asked;
+        }
+    else
+        for (size_t i = 0; i < count; ++i) {
+            const PartRule::Choice choice =
+                local.choose_lines({per_meter_px[i], area_px2[i], length_px[i], line_points[i]}, chances[i]);
+            forms[i] = choice.form;
+            counts[i] = choice.count;
+            asked[i] = choice.asked;
+        }
 }
 
 }  // namespace
 
-float point_count(float projected_area_px2, float importance, const FrameSettings& settings) {
-    const float d = sample_distance(settings);
-    return std::min(settings.splat_factor * importance * projected_area_px2 / (d * d), 4.0e9f);
-}
-
-PartChoice choose_points(const PackedPart& part, float projected_area_px2, const FrameSettings& settings,
-                         float chance) {
-    PartChoice choice;
-    if (part.triangle_count == 0 || !(projected_area_px2 > 0.0f)) return choice;
-    float p = point_count(projected_area_px2, part.importance, settings);
-    float stored = float(part.point_count);
-    if (part.point_count == 0 || p >= 1.5f * stored || (!settings.blend && p >= stored))
-        return all_triangles(part);
-    choice.splat_px = std::sqrt(settings.splat_factor * projected_area_px2 / std::min(p, stored));
-    if (p < stored) {
-        choice.points = round_by_chance(p, chance, part.point_count);
+void PartRule::demand(const PackedPart& part, const PlantViews& views, const FrameSettings& settings,
+                      PartDemands& out) const {
+    const size_t count = views.size();
+    out.pixels_per_meter = views.pixels_per_meter;
+    PartColumns projected;
+    PlantColumn<float> fill, gain;
+    project_parts(part, views, settings, projected);
+    if (is_points_) {
+        multiply(projected.area_px2.data(), per_fill_px2_, count, fill.data());
     } else {
-        choice.points = part.point_count;
-        choice.triangles = round_by_chance((p - stored) / (0.5f * stored) * float(part.triangle_count),
-                                           chance, part.triangle_count);
-        choice.point_owner_min = choice.triangles;
-        choice.skipped_points =
-            uint32_t(uint64_t(part.point_count) * choice.triangles / std::max(part.triangle_count, 1u));
+        for (size_t i = 0; i < count; ++i)
+            fill[i] = projected.area_px2[i] / (projected.length_px[i] * line_d_px_);
     }
-    return choice;
+    gains_at(gains_, fill, count, gain);
+    multiply(projected.area_px2.data(), gain.data(), count, out.area_px2.data());
+    if (is_points_) return;
+    multiply(views.pixels_per_meter.data(), line_points_fill_m_, count, fill.data());
+    gains_at(gains_, fill, count, gain);
+    const PartRule local = *this;
+    for (size_t i = 0; i < count; ++i) {
+        out.length_px[i] = projected.length_px[i];
+        out.line_points[i] = local.line_points(views.pixels_per_meter[i], gain[i]);
+    }
 }
 
-PartChoice choose_lines(const PackedPart& part, float projected_area_px2, float projected_length_px,
-                        float pixels_per_meter, const FrameSettings& settings, float chance) {
-    PartChoice choice;
-    if (part.triangle_count == 0 || !(projected_area_px2 > 0.0f)) return choice;
-    const float d = line_sample_distance(settings);
-    float line_area_px2 = projected_length_px * d;
-    // importance makes more and thinner lines, and keeps triangles for longer
-    float q = part.importance * projected_area_px2 / line_area_px2;
-    if (part.line_count == 0 || !(line_area_px2 > 0.0f) || part.line_error_m * pixels_per_meter >= d ||
-        !(q <= 1.0f))
-        return all_triangles(part);
-    choice.lines = round_by_chance(q * float(part.line_count), chance, part.line_count);
-    choice.line_width_px = d / part.importance;
-    choice.turned_share = 1.0f - std::sqrt(q);
-    return choice;
-}
-
-float line_points_at_1px(const PackedPart& part, float pixels_per_meter, const FrameSettings& settings) {
-    if (settings.projection != ProjectionMode::measured || !settings.weigh_by_facing) return 0.0f;
-    const float area_px2 = mean_projected_area_m2(part) * pixels_per_meter * pixels_per_meter;
-    const float length_px = mean_projected_length_m(part) * pixels_per_meter;
-    if (!(area_px2 > 0.0f) || !(length_px > 0.0f)) return 0.0f;
-    return settings.splat_factor * part.importance * area_px2 *
-           gain_at(part, area_px2 / (length_px * sample_distance(settings)));
-}
-
-float line_points_from_px(const PackedPart& part, float points_at_1px, float pixels_per_meter) {
-    constexpr float k_few_points = 8.0f;
-    if (part.line_count == 0 || !(points_at_1px > 0.0f)) return INFINITY;
-    return std::min(part.line_length_m / float(part.line_count) * pixels_per_meter,
-                    std::sqrt(points_at_1px / k_few_points));
-}
-
-PartChoice choose_line_points(const PackedPart& part, float points_at_1px, const FrameSettings& settings,
-                              float chance) {
-    PartChoice choice;
-    const float d = sample_distance(settings);
-    choice.points = round_by_chance(points_at_1px / (d * d), chance, line_point_count(part));
-    choice.splat_px = d / std::sqrt(part.importance);
-    choice.density_limit_m2 = INFINITY;
-    weigh_by_facing(choice, 0.5f, settings);
-    return choice;
+void choose_parts(const PartRule& rule, const PartDemands& demands, std::span<const float> chances,
+                  PartChoices& out) {
+    choose_all(rule, demands, chances.data(), chances.size(), out.form.data(), out.count.data(),
+               out.asked.data());
 }
 
 PartChoice choose_cloud(std::span<const float> densities, float pixels_per_meter, float depth_m,
@@ -131,58 +195,11 @@ PartChoice choose_cloud(std::span<const float> densities, float pixels_per_meter
     choice.skipped_points = choice.points - std::min(choice.points, count_up_to(density));
     choice.density_limit_m2 = depth_m > 0.0f ? density * depth_m * depth_m : INFINITY;
     choice.splat_px = d;  // the squares of p = c_p A' / d'^2 points add up to c_p A'
-    weigh_by_facing(choice, 0.5f, settings);
-    return choice;
-}
-
-namespace {
-
-// The area that points or lines are to cover. The gain was measured at d' = 1. Points of side d' overlap as points of one
-// pixel do in a picture d' times coarser, and what the triangles cover does not depend on the resolution: so d' is the
-// unit of length here.
-float gained_area_px2(const PackedPart& part, const PartProjection& projected,
-                      const FrameSettings& settings) {
-    if (settings.projection != ProjectionMode::measured) return projected.area_px2;
-    float fill_px2;  // that of a point or line
-    if (part.kind == PackedPartKind::points) {
-        const float d = sample_distance(settings);
-        fill_px2 = float(part.point_count) * d * d;
-    } else {
-        fill_px2 = projected.length_px * line_sample_distance(settings);
+    if (settings.weigh_by_facing) {
+        choice.mean_facing = 0.5f;
+        choice.splat_px /= std::sqrt(choice.mean_facing);
     }
-    return fill_px2 > 0.0f ? projected.area_px2 * gain_at(part, projected.area_px2 / fill_px2)
-                           : projected.area_px2;
-}
-
-}  // namespace
-
-PartChoice choose_part(const PackedPart& part, const PartProjection& projected, const FrameSettings& settings,
-                       float chance) {
-    if (!settings.level_of_detail) return all_triangles(part);
-    const float area_px2 = gained_area_px2(part, projected, settings);
-    if (part.kind == PackedPartKind::lines) {
-        const PartChoice lines =
-            choose_lines(part, area_px2, projected.length_px, projected.pixels_per_meter, settings, chance);
-        if (lines.triangles > 0) return lines;
-        // Each plant goes over at a d' of its own.
-        const float turn = chance * 256.0f - std::floor(chance * 256.0f);
-        const float points_at_1px = line_points_at_1px(part, projected.pixels_per_meter, settings);
-        const float from_px = line_points_from_px(part, points_at_1px, projected.pixels_per_meter);
-        return line_sample_distance(settings) * (0.75f + 0.5f * turn) < from_px
-                   ? lines
-                   : choose_line_points(part, points_at_1px, settings, chance);
-    }
-    PartChoice choice = choose_points(part, area_px2, settings, chance);
-    weigh_by_facing(choice, mean_facing(part, projected.area_px2, projected.pixels_per_meter), settings);
     return choice;
-}
-
-bool draws_triangles(const PackedPart& part, const PartProjection& projected, const FrameSettings& settings) {
-    const float area_px2 = gained_area_px2(part, projected, settings);
-    if (part.kind == PackedPartKind::points)
-        return point_count(area_px2, part.importance, settings) >= float(part.point_count);
-    return choose_lines(part, area_px2, projected.length_px, projected.pixels_per_meter, settings, 0.0f)
-               .triangles > 0;
 }
 
 float widest_spread_px(float least_importance, float most_line_width, const FrameSettings& settings) {

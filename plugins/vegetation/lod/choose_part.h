@@ -27,46 +27,163 @@ struct PartChoice {
     float density_limit_m2 = 0.0f;
 };
 
-// p = c_p A'_p / d'^2, times importance (ERRATA 1). Not rounded; finite and >= 0 for finite input.
-float point_count(float projected_area_px2, float importance, const FrameSettings& settings);
+// What a plant asks of one of its parts at the frame's d'.
+struct PartDemand {
+    float pixels_per_meter;
+    float area_px2;     // that points or lines are to cover: A'_p times the gain
+    float length_px;    // l'; only of lines
+    float line_points;  // p of the points that may stand in the place of lines
+};
+// The same of many plants of one model.
+struct PartDemands {
+    std::span<const float> pixels_per_meter;
+    PlantColumn<float> area_px2;
+    PlantColumn<float> length_px, line_points;  // left alone for parts of points
+    PartDemand operator[](size_t i) const {
+        return {pixels_per_meter[i], area_px2[i], length_px[i], line_points[i]};
+    }
+};
 
-// p < n_p: the first p points. n_p <= p < 1.5 n_p (2k <= p < 3k where n_p = 2k): the first share of the triangles and
-// the points of the others. Above: all triangles. The squares the points cover add up to c_p times the projected
-// area in every case, so that the mean coverage does not depend on the representation.
-// chance in [0, 1): rounds a fraction of a point up or down.
-PartChoice choose_points(const PackedPart& part, float projected_area_px2, const FrameSettings& settings,
-                         float chance);
+// The rules for one part, with all that the plants of a frame have in common. What remains for each plant has no branches,
+// so that compilers make vectors of loops over plants.
+class PartRule {
+  public:
+    PartRule(const PackedPart& part, const FrameSettings& settings);
 
-// eps_l on the screen >= d', or q = A'_l / (l' d') > 1: all triangles. Else the first q n_l lines.
-PartChoice choose_lines(const PackedPart& part, float projected_area_px2, float projected_length_px,
-                        float pixels_per_meter, const FrameSettings& settings, float chance);
+    // The gain was measured at d' = 1. Points of side d' overlap as points of one pixel do in a picture d' times coarser,
+    // and what the triangles cover does not depend on the resolution: so d' is the unit of length here.
+    PartDemand demand(const PartProjection& projected) const;
+    void demand(const PackedPart& part, const PlantViews& views, const FrameSettings& settings,
+                PartDemands& out) const;
 
-// Points that stand for a part's lines (plant/line_points.h), where those are shorter than d', and so wider than long, or
-// where few points would do: a whole trunk for every third plant is worse than a third of it for each. As many as a part of
-// points would draw, times d'^2; 0 where splats are not sized by |n . v|.
-float line_points_at_1px(const PackedPart& part, float pixels_per_meter, const FrameSettings& settings);
-// The d' from which on they do; each plant has its own within a quarter of that.
-float line_points_from_px(const PackedPart& part, float points_at_1px, float pixels_per_meter);
-PartChoice choose_line_points(const PackedPart& part, float points_at_1px, const FrameSettings& settings,
-                              float chance);
+    enum class Form : uint32_t {
+        triangles,    // all
+        points,       // the first of them
+        blend,        // the first triangles and the points of the others
+        lines,        // the first of them
+        line_points,  // the first points that stand for lines (plant/line_points.h)
+    };
+    struct Choice {
+        Form form;
+        uint32_t count;  // of what the form names, 0 for all triangles; of a blend the triangles
+        float asked;     // of points p, of lines q, not rounded
+    };
+    // chance in [0, 1): rounds a fraction of a point or line up or down.
+    Choice choose(const PartDemand& demand, float chance) const {
+        return is_points_ ? choose_points(demand, chance) : choose_lines(demand, chance);
+    }
+    PartChoice expand(const Choice& choice) const;
+    // Whether points or lines do not suffice.
+    bool draws_triangles(const PartDemand& demand) const {
+        const Form form = choose(demand, 0.0f).form;
+        return form == Form::triangles || form == Form::blend;
+    }
+
+    // p < n_p: the first p points. n_p <= p < 1.5 n_p (2k <= p < 3k where n_p = 2k): the first share of the triangles and
+    // the points of the others. Above: all triangles. The squares the points cover add up to c_p times the projected
+    // area in every case, so that the mean coverage does not depend on the representation.
+    Choice choose_points(const PartDemand& demand, float chance) const {
+        const float p = point_count(demand.area_px2);
+        const bool any = demand.area_px2 > 0.0f;
+        const bool all = always_triangles_ | (any & (p >= triangles_from_));
+        const bool blends = any & (p >= points_);
+        const float count = (blends ? (p - points_) * blended_per_point_ : p) + chance;
+        return {all      ? Form::triangles
+                : blends ? Form::blend
+                         : Form::points,
+                round_down(all ? 0.0f : count, k_most_count), p};
+    }
+
+    // eps_l on the screen >= d', or q = A'_l / (l' d') > 1: all triangles. Else the first q n_l lines, or points.
+    Choice choose_lines(const PartDemand& demand, float chance) const {
+        const float line_area_px2 = demand.length_px * line_d_px_;
+        const bool any = demand.area_px2 > 0.0f;
+        // importance makes more and thinner lines, and keeps triangles for longer
+        const float asked = importance_ * demand.area_px2 / line_area_px2;
+        const bool suffices = (lines_ > 0.0f) & (line_area_px2 > 0.0f) &
+                              (line_error_m_ * demand.pixels_per_meter < line_d_px_) & (asked <= 1.0f);
+        const bool all = always_triangles_ | (any & !suffices);
+        const float q = any & suffices ? asked : 0.0f;
+        const float turn = chance * 256.0f - float(int32_t(chance * 256.0f));
+        const bool as_points = line_d_px_ * (0.75f + 0.5f * turn) >= line_points_from_px(demand);
+        const float count = (as_points ? demand.line_points : q * lines_) + chance;
+        return {all         ? Form::triangles
+                : as_points ? Form::line_points
+                            : Form::lines,
+                round_down(all ? 0.0f : count, as_points ? line_points_ : lines_),
+                as_points ? demand.line_points : q};
+    }
+
+    // p = c_p A'_p / d'^2, times importance (ERRATA 1). Finite and >= 0.
+    float point_count(float area_px2) const {
+        const float p = points_per_px2_ * area_px2;
+        return area_px2 > 0.0f ? (p < k_most_points ? p : k_most_points) : 0.0f;
+    }
+    // A count of points as it would be at d' = 1.
+    float at_1px(float points) const { return points * d_px_ * d_px_; }
+    // The d' from which on points are drawn in the place of lines; each plant has its own within a quarter of that. Where
+    // lines are shorter than d', and so wider than long, or where few points would do: a whole trunk for every third
+    // plant is worse than a third of it for each.
+    float line_points_from_px(const PartDemand& demand) const {
+        constexpr float k_few_points = 8.0f;
+        const float length_px = mean_line_length_m_ * demand.pixels_per_meter;
+        const float few_px = std::sqrt(demand.line_points * (1.0f / k_few_points)) * d_px_;
+        const float from_px = length_px < few_px ? length_px : few_px;
+        return (demand.line_points > 0.0f) & (lines_ > 0.0f) ? from_px : INFINITY;
+    }
+    bool is_points() const { return is_points_; }
+
+  private:
+    static constexpr float k_most_points = 4.0e9f;
+    static constexpr float k_most_count = 2147483520.0f;  // the last float below 2^31
+    static uint32_t round_down(float count, float most) {
+        return uint32_t(int32_t(count < most ? count : most));
+    }
+    // Points in the place of lines, not rounded: as many as a part of points would draw; 0 where splats are not sized by
+    // |n . v|.
+    float line_points(float per_meter_px, float gain) const {
+        return point_count(line_points_area_m2_ * (per_meter_px * per_meter_px) * gain);
+    }
+
+    bool is_points_, always_triangles_;
+    std::array<float, k_gain_levels> gains_;  // 1 where nothing was measured
+    float d_px_, line_d_px_;
+    float importance_;
+    float points_, lines_, line_points_;  // stored
+    float points_per_px2_;
+    float per_fill_px2_;       // of points: 1 over what squares of side d' cover, as many as are stored
+    float triangles_from_;     // p
+    float blended_per_point_;  // triangles drawn for a point more than stored
+    float line_error_m_, mean_line_length_m_;
+    float line_points_area_m2_;  // in the mean over directions; 0: no points in the place of lines
+    float line_points_fill_m_;   // 1 m times that over the lines' mean length and d'
+    float splat_px_, line_width_px_, mean_facing_ = 0.0f;
+    uint32_t triangle_count_, point_count_, line_count_;
+};
+
+// What rule.choose says of many plants.
+struct PartChoices {
+    PlantColumn<PartRule::Form> form;
+    PlantColumn<uint32_t> count;
+    PlantColumn<float> asked;
+    PartRule::Choice operator[](size_t i) const { return {form[i], count[i], asked[i]}; }
+};
+// One choice for each of the chances, at most k_plants_a_batch.
+void choose_parts(const PartRule& rule, const PartDemands& demands, std::span<const float> chances,
+                  PartChoices& out);
+
+// The whole decision for one part.
+inline PartChoice choose_part(const PackedPart& part, const PlantView& view, const FrameSettings& settings,
+                              float chance) {
+    const PartRule rule(part, settings);
+    return rule.expand(rule.choose(rule.demand(project_part(part, view, settings)), chance));
+}
 
 // Points that stand for a whole tile: at each place those whose density is at most what it asks for at its own distance,
 // which are those the plants would draw there. densities: of the cloud's points, ascending (eco/make_cloud.h);
 // pixels_per_meter: at the tile's centre, depth_m along the view; nearest_pixels_per_meter >= that.
 PartChoice choose_cloud(std::span<const float> densities, float pixels_per_meter, float depth_m,
                         float nearest_pixels_per_meter, const FrameSettings& settings);
-
-// The whole decision for one part; projected with the settings.
-PartChoice choose_part(const PackedPart& part, const PartProjection& projected, const FrameSettings& settings,
-                       float chance);
-inline PartChoice choose_part(const PackedPart& part, const PlantView& view, const FrameSettings& settings,
-                              float chance) {
-    return choose_part(part, project_part(part, view, settings), settings, chance);
-}
-
-// Whether the part's points or lines do not suffice, so that choose_part draws triangles. Not of one without levels of
-// detail.
-bool draws_triangles(const PackedPart& part, const PartProjection& projected, const FrameSettings& settings);
 
 // How far beside their geometry points and lines cover pixels at most, along an axis of the picture.
 // least_importance: of all parts; most_line_width: of all lines, over their part's mean.

@@ -1,6 +1,8 @@
 // Projected area and length of a part on the screen, in pixels (DESIGN section 3, ERRATA 2 and 3).
 #pragma once
 #include <glm/common.hpp>
+#include <array>
+#include <span>
 #include "plugins/vegetation/lod/settings.h"
 #include "plugins/vegetation/plant/plant.h"
 
@@ -11,6 +13,20 @@ struct PlantView {
     vec3 direction_plant;  // unit, from the viewer to the plant, in plant space
     float
         pixels_per_meter;  // on the image at the plant's distance, times its scale: f / r * scale. Finite, >= 0
+};
+
+// Numbers of many plants, so that loops over them are made vectors of.
+inline constexpr size_t k_plants_a_batch = 256;
+template <class T>
+using PlantColumn = std::array<T, k_plants_a_batch>;
+
+// Columns of one length, at most k_plants_a_batch.
+struct PlantViews {
+    std::span<const float> direction_x, direction_y, direction_z, pixels_per_meter;
+    size_t size() const { return pixels_per_meter.size(); }
+    PlantView operator[](size_t i) const {
+        return {{direction_x[i], direction_y[i], direction_z[i]}, pixels_per_meter[i]};
+    }
 };
 
 // pixels_per_meter for a plant of radius_m whose centre is distance_m away. Within two radii r moves from the centre
@@ -37,5 +53,12 @@ float projected_length_px(const PackedPart& part, const PlantView& view, Project
 // points are asked for by the mean area over all directions: walking around a plant takes no point away and adds none, and
 // a tile's cloud, which is made for no direction, has the same points.
 PartProjection project_part(const PackedPart& part, const PlantView& view, const FrameSettings& settings);
+// The same of many plants of one model.
+struct PartColumns {
+    PlantColumn<float> area_px2;
+    PlantColumn<float> length_px;  // left alone for parts of points
+};
+void project_parts(const PackedPart& part, const PlantViews& views, const FrameSettings& settings,
+                   PartColumns& out);
 
 }  // namespace coppice

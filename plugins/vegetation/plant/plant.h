@@ -4,6 +4,8 @@
 // pack.cpp writes, load.cpp reads.
 #pragma once
 #include <array>
+#include <bit>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -27,7 +29,11 @@ static_assert(sizeof(PackedVertex) == 16);
 // % face on (a flat part). Use evaluate(): never negative, never NaN.
 struct DirectionForm {
     std::array<float, 6> m{};
-    float evaluate(vec3 d) const;
+    float evaluate(vec3 d) const {
+        const float square = m[0] * d.x * d.x + m[1] * d.y * d.y + m[2] * d.z * d.z +
+                             2.0f * (m[3] * d.x * d.y + m[4] * d.x * d.z + m[5] * d.y * d.z);
+        return square > 0.0f ? std::sqrt(square) : 0.0f;
+    }
 };
 
 inline constexpr uint32_t k_part_closed = 1;  // of a closed surface only the front half can be seen
@@ -66,8 +72,27 @@ struct PackedPart {
 };
 static_assert(sizeof(PackedPart) == 256);
 
-// The part's coverage gain at a fill > 0, between the levels by (piecewise linear) logarithm. In [0.25, 4].
-float gain_at(const PackedPart& part, float fill);
+// The coverage gain at a fill > 0, between the levels by (piecewise linear) logarithm. In [0.25, 4] of a checked part.
+struct GainPlace {
+    int32_t level;  // in [0, k_gain_levels - 2]
+    float share;    // of the next level
+};
+inline GainPlace gain_place(float fill) {
+    // Exponent and mantissa read as one number: the logarithm, with straight lines between powers of two.
+    constexpr float k_last = float(k_gain_levels - 1);
+    const float logarithm =
+        float(std::bit_cast<int32_t>(fill > 1.0e-30f ? fill : 1.0e-30f)) * 0x1p-23f - 127.0f;
+    const float above_first = logarithm + k_last > 0.0f ? logarithm + k_last : 0.0f;
+    const float place = above_first < k_last ? above_first : k_last;
+    const int32_t level = int32_t(place < k_last - 1.0f ? place : k_last - 1.0f);
+    return {level, place - float(level)};
+}
+inline float gain_at(const std::array<float, k_gain_levels>& gains, GainPlace place) {
+    return gains[size_t(place.level)] * (1.0f - place.share) + gains[size_t(place.level) + 1] * place.share;
+}
+inline float gain_at(const PackedPart& part, float fill) {
+    return gain_at(part.coverage_gain, gain_place(fill));
+}
 
 // What is seen of the part in the mean over all directions, whatever its shape: half its surface, of which a closed one
 // shows half. Of its points, which share that surface out, each shows |n . v| of its share.

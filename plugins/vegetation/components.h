@@ -24,14 +24,14 @@ struct PlantModel {
 };
 
 // Plant space to world space; its transpose turns back.
-inline mat3 rotation_matrix(vec4 turn) {
-    constexpr float k_step = 1.0f / 32767.0f;
-    const float x = turn.x * k_step, y = turn.y * k_step, z = turn.z * k_step, w = turn.w * k_step;
+inline constexpr float k_turn_step = 1.0f / 32767.0f;
+inline mat3 rotation_matrix(PlantTurn turn) {
+    const float x = float(turn.x) * k_turn_step, y = float(turn.y) * k_turn_step;
+    const float z = float(turn.z) * k_turn_step, w = float(turn.w) * k_turn_step;
     return mat3(vec3(1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)),
                 vec3(2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)),
                 vec3(2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)));
 }
-inline mat3 rotation_matrix(PlantTurn turn) { return rotation_matrix(vec4(turn.x, turn.y, turn.z, turn.w)); }
 PlantTurn pack_turn(float x, float y, float z, float w);
 inline PlantTurn pack_turn_about_y(float angle_rad) {
     return pack_turn(0.0f, portable_sin(angle_rad * 0.5f), 0.0f, portable_cos(angle_rad * 0.5f));

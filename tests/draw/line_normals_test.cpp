@@ -30,14 +30,14 @@ class LineNormalsTest : public RasterTest {
     }
     // By angle_rad about the vertical.
     static WorkInstance turned(float angle_rad, float scale, vec3 place) {
-        const float c = scale * portable_cos(angle_rad), s = scale * portable_sin(angle_rad);
-        return {{{c, 0, s, place.x}, {0, scale, 0, place.y}, {-s, 0, c, place.z}}, {}};
+        return {place.x, place.y,
+                place.z, scale,
+                0.0f,    portable_sin(0.5f * angle_rad),
+                0.0f,    portable_cos(0.5f * angle_rad)};
     }
     static vec3 apply(const WorkInstance& instance, vec3 v) {
-        vec3 out;
-        for (int r = 0; r < 3; ++r)
-            out[r] = instance.rows[r][0] * v.x + instance.rows[r][1] * v.y + instance.rows[r][2] * v.z;
-        return out;
+        const vec3 axis(instance.turn_x, instance.turn_y, instance.turn_z), across = glm::cross(axis, v);
+        return instance.scale * (v + 2.0f * (instance.turn_w * across + glm::cross(axis, across)));
     }
 };
 

@@ -38,15 +38,10 @@ class RasterTest : public ::testing::Test {
     static PackedVertex at(float x, float y, float z, uint32_t surface = 1u) {
         return {(x - 128.0f) * z / 128.0f, (128.0f - y) * z / 128.0f, -z, surface};
     }
-    static WorkInstance identity() {
-        WorkInstance instance{};
-        for (int axis = 0; axis < 3; ++axis) instance.rows[axis][axis] = 1.0f;
-        return instance;
-    }
     void draw(const std::vector<PackedVertex>& vertices, const PartChoice& choice,
               const std::vector<uint32_t>& owners = {}) {
         work_.begin(1);
-        work_.part(0).add({}, choice, work_.part(0).add_instance(identity()));
+        work_.part(0).add({}, choice, work_.part(0).add_instance({}));
         ASSERT_TRUE(rasteriser_->set_geometry({vertices, owners}));
         draw_work();
     }

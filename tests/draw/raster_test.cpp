@@ -34,7 +34,7 @@ TEST_F(RasterTest, SplatsCoverTheirAreaInTheMean) {
             ASSERT_EQ(points.size(), 400u);
             ASSERT_TRUE(rasteriser_->set_geometry({points, {}}));
             work_.begin(1);
-            uint32_t instance = work_.part(0).add_instance(identity());
+            uint32_t instance = work_.part(0).add_instance({});
             for (uint32_t first = 0; first < points.size(); first += run) {
                 PartChoice choice;
                 choice.points = run;

@@ -277,7 +277,7 @@ TEST_F(ResolveTest, TheCoverageViewShowsPlantsAlone) {
     };
     work_.begin(1);
     WorkPart& work = work_.part(0);
-    const uint32_t instance = work.add_instance(identity());
+    const uint32_t instance = work.add_instance({});
     auto add_plant = [&](uint32_t first_vertex) {
         PartGeometry geometry{};
         geometry.first_triangle_vertex = first_vertex;

@@ -55,9 +55,7 @@ std::vector<PackedVertex> make_vertices(const Case& test, float focal_px) {
 }
 
 void add_entries(const Case& test, WorkPart& work) {
-    WorkInstance instance{};
-    for (int axis = 0; axis < 3; ++axis) instance.rows[axis][axis] = 1.0f;
-    uint32_t index = work.add_instance(instance);
+    const uint32_t index = work.add_instance({});
     PartChoice choice;
     choice.splat_px = choice.line_width_px = 1.0f;
     if (test.kind == WorkKind::points_2) choice.splat_px = 1.4f;

@@ -41,11 +41,11 @@ uint64_t GroundExpander::expand_terrain(const Terrain& terrain, vec3 origin_came
     };
     level_of_patch_.resize(patches.size());
     for (size_t p = 0; p < patches.size(); ++p)
-        level_of_patch_[p] = patches[p].level_count == 0
-                                 ? 0
-                                 : choose_ground_level(patches[p], terrain.levels(), bounds_of(patches[p]),
-                                                       frustum, error_px);
-    const uint32_t instance = work.add_instance(instance_of(mat3(1.0f), 1.0f, origin_camera));
+        level_of_patch_[p] =
+            patches[p].level_count == 0
+                ? 0
+                : choose_ground_level(patches[p], terrain.levels(), bounds_of(patches[p]), frustum, error_px);
+    const uint32_t instance = work.add_instance(instance_at(origin_camera));
     uint64_t triangles = 0;
     for (size_t p = 0; p < patches.size(); ++p) {
         if (patches[p].level_count == 0 || see_box(frustum, bounds_of(patches[p])) == Visibility::outside)
@@ -66,7 +66,7 @@ uint64_t GroundExpander::expand(std::span<const GroundInView> in_view, const Sce
         if (at.coarse_level != k_in_full) {
             const CoarseGround::Level& level = ground.coarse_levels[at.coarse_level];
             work.add_ground(ground.first_coarse_vertex + level.first_vertex, level.vertex_count / 3,
-                            work.add_instance(instance_of(mat3(1.0f), 1.0f, vec3(at.space_camera))));
+                            work.add_instance(instance_at(vec3(at.space_camera))));
             triangles += level.vertex_count / 3;
         } else if (ground.terrain) {
             triangles +=

@@ -10,8 +10,8 @@ class GroundExpander {
   public:
     // error_px: a level's error stays below it on the picture; 0: all at the finest. Returns the triangles. Allocates for a
     // terrain larger than those before.
-    uint64_t expand(std::span<const GroundInView> in_view, const SceneGeometry& geometry, const Frustum& frustum,
-                    float error_px, WorkPart& work);
+    uint64_t expand(std::span<const GroundInView> in_view, const SceneGeometry& geometry,
+                    const Frustum& frustum, float error_px, WorkPart& work);
 
   private:
     uint64_t expand_terrain(const Terrain& terrain, vec3 origin_camera, uint32_t first_vertex,

@@ -102,8 +102,7 @@ void expand_clouds(std::span<const CloudTile> tiles, const SceneGeometry& geomet
                                                seen.nearest_pixels_per_meter, tile_settings);
         if (choice.points == 0) continue;
         // From the beginning also at rest: what is asked for is the prefix up to a density.
-        work.add(cloud.geometry, choice,
-                 work.add_instance(instance_of(mat3(1.0f), 1.0f, tile.origin_camera)));
+        work.add(cloud.geometry, choice, work.add_instance(instance_at(tile.origin_camera)));
     }
 }
 

@@ -25,7 +25,7 @@ layout(push_constant) uniform Frame {
 layout(binding = 0) buffer Visibility { uint64_t visibility[]; };
 layout(binding = 1) uniform utextureBuffer vertices;  // xyz: position in plant space as float bits, w: surface
 layout(binding = 2) uniform utextureBuffer entries;   // two texels an entry
-layout(binding = 3) uniform textureBuffer instances;  // four texels an instance: rows of plant -> world, spare
+layout(binding = 3) uniform textureBuffer instances;  // two texels an instance: foot and scale, quaternion
 
 const uint k_ground_bit = 0x80000000u;  // of an entry's instance: no plant
 const uint k_view_lit = 0u, k_view_kinds = 1u;
@@ -71,9 +71,12 @@ struct Transform {
 };
 
 Transform load_transform(uint instance, bool ground) {
-    vec4 x = texelFetch(instances, int(instance * 4u));
-    vec4 y = texelFetch(instances, int(instance * 4u + 1u));
-    vec4 z = texelFetch(instances, int(instance * 4u + 2u));
+    vec4 foot = texelFetch(instances, int(instance * 2u));
+    vec4 q = texelFetch(instances, int(instance * 2u + 1u));
+    // rotation_matrix of components.h, row by row: plant -> world.
+    vec4 x = vec4(foot.w * vec3(1.0 - 2.0 * (q.y * q.y + q.z * q.z), 2.0 * (q.x * q.y - q.w * q.z), 2.0 * (q.x * q.z + q.w * q.y)), foot.x);
+    vec4 y = vec4(foot.w * vec3(2.0 * (q.x * q.y + q.w * q.z), 1.0 - 2.0 * (q.x * q.x + q.z * q.z), 2.0 * (q.y * q.z - q.w * q.x)), foot.y);
+    vec4 z = vec4(foot.w * vec3(2.0 * (q.x * q.z - q.w * q.y), 2.0 * (q.y * q.z + q.w * q.x), 1.0 - 2.0 * (q.x * q.x + q.y * q.y)), foot.z);
     Transform t;
     t.to_x = frame.row_x.x * x + frame.row_x.y * y + frame.row_x.z * z;
     t.to_y = frame.row_y.x * x + frame.row_y.y * y + frame.row_y.z * z;

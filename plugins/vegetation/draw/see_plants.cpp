@@ -31,7 +31,6 @@ struct Block {
     Column center_x, center_y, center_z;    // of the sphere that holds the plant
     Column radius_m, distance_m;
     Column direction_x, direction_y, direction_z, pixels_per_meter;
-    std::array<Column, 9> rows;  // plant space to world space, scaled; row after row
 };
 
 // How far spheres reach into the view.
@@ -78,10 +77,10 @@ size_t load_block(const PlantRun& run, size_t first, size_t count, const DrawMod
     }
     for (size_t i = 0; i < found; ++i) {
         const PlantTurn turn = run.turns[block.index[i]];
-        block.turn_x[i] = float(turn.x);
-        block.turn_y[i] = float(turn.y);
-        block.turn_z[i] = float(turn.z);
-        block.turn_w[i] = float(turn.w);
+        block.turn_x[i] = float(turn.x) * k_turn_step;
+        block.turn_y[i] = float(turn.y) * k_turn_step;
+        block.turn_z[i] = float(turn.z) * k_turn_step;
+        block.turn_w[i] = float(turn.w) * k_turn_step;
     }
     return found;
 }
@@ -94,9 +93,7 @@ void look_at_block(const DrawModel& model, const Frustum& camera, size_t count, 
                 middle_z = model.center_plant.z;
     const float model_radius_m = model.radius_m;
     for (size_t i = 0; i < count; ++i) {
-        constexpr float k_step = 1.0f / 32767.0f;
-        const float x = b.turn_x[i] * k_step, y = b.turn_y[i] * k_step;
-        const float z = b.turn_z[i] * k_step, w = b.turn_w[i] * k_step;
+        const float x = b.turn_x[i], y = b.turn_y[i], z = b.turn_z[i], w = b.turn_w[i];
         const float scale = b.scale[i];
         const float xx = 1 - 2 * (y * y + z * z), xy = 2 * (x * y - w * z), xz = 2 * (x * z + w * y);
         const float yx = 2 * (x * y + w * z), yy = 1 - 2 * (x * x + z * z), yz = 2 * (y * z - w * x);
@@ -127,9 +124,6 @@ void look_at_block(const DrawModel& model, const Frustum& camera, size_t count, 
         b.pixels_per_meter[i] =
             pixels_per_meter(frustum.focal_px, distance_m, radius_m, frustum.near_m, scale) *
             off_axis_stretch(frustum.corner_cos, along_m, distance_m);
-        b.rows[0][i] = xx * scale, b.rows[1][i] = xy * scale, b.rows[2][i] = xz * scale;
-        b.rows[3][i] = yx * scale, b.rows[4][i] = yy * scale, b.rows[5][i] = yz * scale;
-        b.rows[6][i] = zx * scale, b.rows[7][i] = zy * scale, b.rows[8][i] = zz * scale;
     }
     reach_into_view(frustum, b.center_x.data(), b.center_y.data(), b.center_z.data(), b.radius_m.data(),
                     b.reach_m.data(), count);
@@ -196,13 +190,8 @@ class Viewer {
         seen_.direction_z[at] = block_.direction_z[i];
         seen_.pixels_per_meter[at] = block_.pixels_per_meter[i];
         seen_.seed[at] = run_.models[block_.index[i]].seed;
-        WorkInstance& instance = seen_.instances[at];
-        const float foot[3] = {block_.x[i], block_.y[i], block_.z[i]};
-        for (size_t row = 0; row < 3; ++row) {
-            for (size_t column = 0; column < 3; ++column)
-                instance.rows[row][column] = block_.rows[3 * row + column][i];
-            instance.rows[row][3] = foot[row];
-        }
+        seen_.instances[at] = {block_.x[i],      block_.y[i],      block_.z[i],      block_.scale[i],
+                               block_.turn_x[i], block_.turn_y[i], block_.turn_z[i], block_.turn_w[i]};
         const float own_place =
             model.has_cells ? share_of_own_place(block_.distance_m[i], block_.radius_m[i]) : 0.0f;
         seen_.in_cells[at] = own_place > 0.0f;

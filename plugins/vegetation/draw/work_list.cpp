@@ -14,15 +14,6 @@ size_t lane_bucket(uint32_t count) { return count <= 4 ? 0 : count <= 8 ? 1 : co
 
 }  // namespace
 
-WorkInstance instance_of(const mat3& rotation, float scale, vec3 position_camera) {
-    WorkInstance instance{};
-    for (int row = 0; row < 3; ++row) {
-        for (int column = 0; column < 3; ++column) instance.rows[row][column] = rotation[column][row] * scale;
-        instance.rows[row][3] = position_camera[row];
-    }
-    return instance;
-}
-
 void WorkPart::clear() {
     triangles = lines = points = 0;
     own_instances_.clear();

@@ -32,13 +32,17 @@ static_assert(sizeof(WorkEntry) == 32);
 
 inline constexpr uint32_t k_ground_bit = 1u << 31;  // not a plant
 
-// 64 bytes, four texels: rows of the matrix from plant space to camera-relative world space.
+// 32 bytes, two texels: how a plant stands, relative to the camera; raster.glsl makes a matrix of it.
 struct WorkInstance {
-    float rows[3][4];
-    float unused[4];
+    float x_camera = 0.0f, y_camera = 0.0f, z_camera = 0.0f;  // m, its foot
+    float scale = 1.0f;
+    float turn_x = 0.0f, turn_y = 0.0f, turn_z = 0.0f, turn_w = 1.0f;  // quaternion
 };
-static_assert(sizeof(WorkInstance) == 64);
-WorkInstance instance_of(const mat3& rotation, float scale, vec3 position_camera);
+static_assert(sizeof(WorkInstance) == 32);
+// Neither turned nor scaled.
+inline WorkInstance instance_at(vec3 origin_camera) {
+    return {origin_camera.x, origin_camera.y, origin_camera.z};
+}
 
 inline constexpr uint32_t k_primitives_a_group = 256;  // larger runs are cut, so that groups are alike
 inline constexpr uint32_t k_primitives_a_lane = 32;    // runs up to this long are drawn by a single lane

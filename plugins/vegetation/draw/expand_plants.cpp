@@ -26,7 +26,9 @@ void draw_plants(const SeenPlants& seen, const SceneGeometry& geometry, const Fr
                   if ((choice.triangles | choice.points | choice.lines) == 0) return;
                   if (std::exchange(with_instance, &plant) != &plant)
                       instance = work.add_instance(plant.instance);
-                  work.add(geometry.part_geometry[part], choice, instance, turn);
+                  const PartGeometry& place = geometry.part_geometry[part];
+                  work.add(place, choice, instance, turn,
+                           first_point_of(plant.model, part - plant.first_part_of_model, place.point_turn_mask));
               });
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include "plugins/vegetation/plant/point_run.h"
 #include "runtime/core/jobs.h"
 
 namespace coppice {
@@ -72,11 +73,10 @@ void WorkPart::add_ground(uint32_t first_vertex, uint32_t triangle_count, uint32
     add_triangles(first_vertex, triangle_count, instance | k_ground_bit, false);
 }
 
-void WorkPart::add_from(WorkKind kind, WorkEntry entry, uint32_t vertices_a_primitive, float start,
+void WorkPart::add_from(WorkKind kind, WorkEntry entry, uint32_t vertices_a_primitive, uint32_t first,
                         uint32_t stored, uint32_t count, bool has_owners) {
-    const uint32_t first = std::min(uint32_t(start * float(stored)), stored);
     const uint32_t from_start = std::min(count, stored - first);
-    // What is left for the list's beginning, and the run from `start` on.
+    // What is left for the list's beginning, and the run from `first` on.
     entry.count = count - from_start;
     add_run(kind, entry, vertices_a_primitive);
     entry.first_vertex += vertices_a_primitive * first;
@@ -85,7 +85,9 @@ void WorkPart::add_from(WorkKind kind, WorkEntry entry, uint32_t vertices_a_prim
     add_run(kind, entry, vertices_a_primitive);
 }
 
-void WorkPart::add(const PartGeometry& geometry, const PartChoice& choice, uint32_t instance, float start) {
+void WorkPart::add(const PartGeometry& geometry, const PartChoice& choice, uint32_t instance, float start,
+                   uint32_t first_point) {
+    auto place_of = [start](uint32_t stored) { return std::min(uint32_t(start * float(stored)), stored); };
     triangles += choice.triangles;
     lines += choice.lines;
     points += choice.points - choice.skipped_points;
@@ -95,7 +97,7 @@ void WorkPart::add(const PartGeometry& geometry, const PartChoice& choice, uint3
         add_from(WorkKind::lines,
                  {geometry.first_line_vertex, 0, instance, 0, choice.line_width_px,
                   std::bit_cast<uint32_t>(choice.turned_share), 0, 0.0f},
-                 2, start, geometry.line_count, choice.lines, false);
+                 2, place_of(geometry.line_count), geometry.line_count, choice.lines, false);
     if (choice.points == 0) return;
     // A side a rounding error over a whole pixel must not cost four times the pixels.
     constexpr float k_slack = 1.0e-3f;
@@ -105,10 +107,12 @@ void WorkPart::add(const PartGeometry& geometry, const PartChoice& choice, uint3
                           : side <= 1.0f + k_slack ? WorkKind::points_1
                           : side <= 2.0f + k_slack ? WorkKind::points_2
                                                    : WorkKind::points_any;
+    uint32_t first = place_of(geometry.point_count) + run_begin(first_point, choice.points);
+    if (first >= geometry.point_count) first -= geometry.point_count;
     add_from(kind,
              {geometry.first_point, 0, instance, geometry.first_owner, side, choice.point_owner_min,
               std::bit_cast<uint32_t>(choice.density_limit_m2), choice.mean_facing},
-             1, start, geometry.point_count, choice.points, true);
+             1, first, geometry.point_count, choice.points, true);
 }
 
 void WorkList::begin(size_t part_count) {

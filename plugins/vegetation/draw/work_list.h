@@ -48,6 +48,7 @@ struct PartGeometry {
     uint32_t first_triangle_vertex, first_point, first_line_vertex, first_owner;
     bool cull_back;  // the triangles are wound and closed so that their backs are never seen
     uint32_t point_count, line_count;  // stored
+    uint32_t point_turn_mask;          // plant/point_run.h; 0: all plants begin with the first
 };
 
 // What one job adds. Kept from frame to frame, so that a warm frame allocates nothing. Entries stand as they came; gather
@@ -58,7 +59,9 @@ class WorkPart {
     // Index of the instance within this part, for add().
     uint32_t add_instance(const WorkInstance& instance);
     // start in [0, 1): where in their lists the points and lines begin; they go on at the lists' beginning.
-    void add(const PartGeometry& geometry, const PartChoice& choice, uint32_t instance, float start = 0.0f);
+    // first_point: of the plant's run of points, which is moved by start.
+    void add(const PartGeometry& geometry, const PartChoice& choice, uint32_t instance, float start = 0.0f,
+             uint32_t first_point = 0);
     void add_ground(uint32_t first_vertex, uint32_t triangle_count, uint32_t instance);
 
     uint64_t triangles = 0, lines = 0, points = 0;
@@ -67,7 +70,7 @@ class WorkPart {
     friend class WorkList;
     void add_triangles(uint32_t first_vertex, uint32_t count, uint32_t instance, bool cull_back);
     void add_run(WorkKind kind, WorkEntry entry, uint32_t vertices_a_primitive);
-    void add_from(WorkKind kind, WorkEntry entry, uint32_t vertices_a_primitive, float start, uint32_t stored,
+    void add_from(WorkKind kind, WorkEntry entry, uint32_t vertices_a_primitive, uint32_t first, uint32_t stored,
                   uint32_t count, bool has_owners);
     void push(size_t bin, const WorkEntry& entry);
 

@@ -7,6 +7,7 @@
 #include "plugins/vegetation/eco/point_demand.h"
 #include "plugins/vegetation/plant/direction_form.h"
 #include "plugins/vegetation/plant/pack.h"
+#include "plugins/vegetation/plant/point_run.h"
 
 namespace coppice {
 namespace {
@@ -70,6 +71,7 @@ struct Source {
     uint32_t plant, part;
     double scale_square;
     float chance;
+    uint32_t first_point;
     uint32_t given = 0;  // points so far
     LinePoint point{};   // the next
     float density = 0.0f;
@@ -82,9 +84,10 @@ bool find_point(Source& source, const Plant& plant) {
     if (source.given >= demand.stored_count()) return false;
     const double asked = double(source.given) + 1.0 - double(source.chance);
     const double density = demand.density(asked) / source.scale_square;
+    const uint32_t next = point_of_run(source.first_point, source.given);
     source.point = part.kind == PackedPartKind::lines
-                       ? line_point(part, plant.line_vertices, source.given)
-                       : LinePoint{plant.points[size_t(part.first_point) + source.given], 1.0f};
+                       ? line_point(part, plant.line_vertices, next)
+                       : LinePoint{plant.points[size_t(part.first_point) + next], 1.0f};
     source.density = std::max(
         source.density,
         pack_density(std::min(density, k_densest), source.point.width_share / float(demand.importance())));
@@ -148,8 +151,9 @@ TileCloud gather_cloud(std::span<const PlantPosition> positions, std::span<const
                                          ? demand.density(double(demand.stored_count())) / scale_square
                                          : 0.0;
             totals.exhausted_area_m2[density_step(exhausted)] += area_m2;
-            sources.push_back(
-                {&demand, uint32_t(i), uint32_t(p), scale_square, part_chance(models[i], uint32_t(p))});
+            const uint32_t number = uint32_t(p);
+            sources.push_back({&demand, uint32_t(i), number, scale_square, part_chance(models[i], number),
+                               first_point_of(models[i], number, point_turn_mask(demand.stored_count()))});
         }
     }
 

@@ -25,6 +25,7 @@ void add_line_points(const Plant& plant, const PackedPart& part, SceneGeometry& 
 
 void set_cloud(SceneGeometry& geometry, uint32_t index, const TileCloud& cloud) {
     DrawCloud& drawn = geometry.clouds[index];
+    drawn.part = cloud.part;
     drawn.densities.assign(cloud.densities.begin(), cloud.densities.end());
     drawn.geometry.point_count = uint32_t(cloud.points.size());
 }
@@ -121,7 +122,7 @@ Result<SceneGeometry> gather_geometry(const GeometrySource& source) {
         place.first_point = append(cloud->points);
         place.first_owner = uint32_t(geometry.owners.size());
         for (float density : cloud->densities) geometry.owners.push_back(std::bit_cast<uint32_t>(density));
-        geometry.clouds.push_back({{}, place});
+        geometry.clouds.push_back({{}, {}, place});
         set_cloud(geometry, uint32_t(geometry.clouds.size() - 1), *cloud);
     }
     for (const Ground& ground : source.grounds) {
@@ -137,7 +138,7 @@ Result<SceneGeometry> gather_geometry(const GeometrySource& source) {
         PartGeometry place{};
         place.first_point = uint32_t(geometry.vertices.size()) + i * k_cloud_points;
         place.first_owner = uint32_t(geometry.owners.size()) + i * k_cloud_points;
-        geometry.clouds.push_back({{}, place});
+        geometry.clouds.push_back({{}, {}, place});
     }
     return geometry;
 }

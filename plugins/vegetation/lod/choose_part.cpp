@@ -37,6 +37,13 @@ void weigh_by_facing(PartChoice& choice, float facing, const FrameSettings& sett
     choice.splat_px /= std::sqrt(facing);
 }
 
+// From above and from the side other shares of a plant are hidden. How many points there are does not depend on it.
+void weigh_by_height(PartChoice& choice, HeightGain height_gain, float height) {
+    const float gain = seen_gain(height_gain, height);
+    choice.splat_px *= std::sqrt(gain);
+    choice.line_width_px *= gain;
+}
+
 PartChoice all_triangles(const PackedPart& part) {
     PartChoice choice;
     choice.triangles = part.triangle_count;
@@ -116,8 +123,9 @@ PartChoice choose_line_points(const PackedPart& part, float points_at_1px, const
     return choice;
 }
 
-PartChoice choose_cloud(std::span<const float> densities, float pixels_per_meter, float depth_m,
-                        float nearest_pixels_per_meter, const FrameSettings& settings) {
+PartChoice choose_cloud(const PackedPart& part, std::span<const float> densities, float pixels_per_meter,
+                        float height, float depth_m, float nearest_pixels_per_meter,
+                        const FrameSettings& settings) {
     PartChoice choice;
     const float d = sample_distance(settings);
     auto density_at = [&](float per_meter_px) {
@@ -132,17 +140,19 @@ PartChoice choose_cloud(std::span<const float> densities, float pixels_per_meter
     choice.density_limit_m2 = depth_m > 0.0f ? density * depth_m * depth_m : INFINITY;
     choice.splat_px = d;  // the squares of p = c_p A' / d'^2 points add up to c_p A'
     weigh_by_facing(choice, 0.5f, settings);
+    if (settings.projection == ProjectionMode::measured && part.point_count > 0)
+        weigh_by_height(choice, height_gain_at(part, density * mean_projected_area_m2(part) / float(part.point_count)),
+                        height);
     return choice;
 }
 
 namespace {
 
-// The area that points or lines are to cover. The gain was measured at d' = 1. Points of side d' overlap as points of one
+// By which gains are looked up; 0: there are none. They were measured at d' = 1. Points of side d' overlap as points of one
 // pixel do in a picture d' times coarser, and what the triangles cover does not depend on the resolution: so d' is the
 // unit of length here.
-float gained_area_px2(const PackedPart& part, const PartProjection& projected,
-                      const FrameSettings& settings) {
-    if (settings.projection != ProjectionMode::measured) return projected.area_px2;
+float fill_of(const PackedPart& part, const PartProjection& projected, const FrameSettings& settings) {
+    if (settings.projection != ProjectionMode::measured) return 0.0f;
     float fill_px2;  // that of a point or line
     if (part.kind == PackedPartKind::points) {
         const float d = sample_distance(settings);
@@ -150,8 +160,14 @@ float gained_area_px2(const PackedPart& part, const PartProjection& projected,
     } else {
         fill_px2 = projected.length_px * line_sample_distance(settings);
     }
-    return fill_px2 > 0.0f ? projected.area_px2 * gain_at(part, projected.area_px2 / fill_px2)
-                           : projected.area_px2;
+    return fill_px2 > 0.0f ? projected.area_px2 / fill_px2 : 0.0f;
+}
+
+// The area that points or lines are to cover.
+float gained_area_px2(const PackedPart& part, const PartProjection& projected,
+                      const FrameSettings& settings) {
+    const float fill = fill_of(part, projected, settings);
+    return fill > 0.0f ? projected.area_px2 * gain_at(part, fill) : projected.area_px2;
 }
 
 }  // namespace
@@ -159,21 +175,25 @@ float gained_area_px2(const PackedPart& part, const PartProjection& projected,
 PartChoice choose_part(const PackedPart& part, const PartProjection& projected, const FrameSettings& settings,
                        float chance) {
     if (!settings.level_of_detail) return all_triangles(part);
-    const float area_px2 = gained_area_px2(part, projected, settings);
+    const float fill = fill_of(part, projected, settings);
+    const float area_px2 = fill > 0.0f ? projected.area_px2 * gain_at(part, fill) : projected.area_px2;
+    const HeightGain height_gain = fill > 0.0f ? height_gain_at(part, fill) : HeightGain{};
     if (part.kind == PackedPartKind::lines) {
-        const PartChoice lines =
+        PartChoice choice =
             choose_lines(part, area_px2, projected.length_px, projected.pixels_per_meter, settings, chance);
-        if (lines.triangles > 0) return lines;
+        if (choice.triangles > 0) return choice;
         // Each plant goes over at a d' of its own.
         const float turn = chance * 256.0f - std::floor(chance * 256.0f);
         const float points_at_1px = line_points_at_1px(part, projected.pixels_per_meter, settings);
         const float from_px = line_points_from_px(part, points_at_1px, projected.pixels_per_meter);
-        return line_sample_distance(settings) * (0.75f + 0.5f * turn) < from_px
-                   ? lines
-                   : choose_line_points(part, points_at_1px, settings, chance);
+        if (line_sample_distance(settings) * (0.75f + 0.5f * turn) >= from_px)
+            choice = choose_line_points(part, points_at_1px, settings, chance);
+        weigh_by_height(choice, height_gain, projected.height);
+        return choice;
     }
     PartChoice choice = choose_points(part, area_px2, settings, chance);
     weigh_by_facing(choice, mean_facing(part, projected.area_px2, projected.pixels_per_meter), settings);
+    weigh_by_height(choice, height_gain, projected.height);
     return choice;
 }
 
@@ -188,11 +208,12 @@ bool draws_triangles(const PackedPart& part, const PartProjection& projected, co
 float widest_spread_px(float least_importance, float most_line_width, const FrameSettings& settings) {
     if (!settings.level_of_detail) return 0.0f;
     // choose_points: a part's last points cover up to 1.5 times the square of d' over importance; those of lines are as
-    // large as these are wide. Half of that is seen in the mean over directions.
-    const float share = std::max(1.5f, most_line_width) * (settings.weigh_by_facing ? 2.0f : 1.0f);
+    // large as these are wide. Half of that is seen in the mean over directions. From above they may be larger.
+    const float share = std::max(1.5f, most_line_width) * (settings.weigh_by_facing ? 2.0f : 1.0f) * k_largest_seen_gain;
     const float splat_px = sample_distance(settings) * std::sqrt(share / least_importance);
     const float line_px = std::min(
-        1.4143f * line_sample_distance(settings) / least_importance * most_line_width, k_widest_line_px);
+        1.4143f * line_sample_distance(settings) / least_importance * most_line_width * k_largest_seen_gain,
+        k_widest_line_px);
     return 0.5f * std::max(splat_px, line_px);
 }
 

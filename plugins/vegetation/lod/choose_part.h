@@ -52,9 +52,11 @@ PartChoice choose_line_points(const PackedPart& part, float points_at_1px, const
 
 // Points that stand for a whole tile: at each place those whose density is at most what it asks for at its own distance,
 // which are those the plants would draw there. densities: of the cloud's points, ascending (eco/make_cloud.h);
-// pixels_per_meter: at the tile's centre, depth_m along the view; nearest_pixels_per_meter >= that.
-PartChoice choose_cloud(std::span<const float> densities, float pixels_per_meter, float depth_m,
-                        float nearest_pixels_per_meter, const FrameSettings& settings);
+// pixels_per_meter: at the tile's centre, height (PartProjection) over it, depth_m along the view;
+// nearest_pixels_per_meter >= pixels_per_meter.
+PartChoice choose_cloud(const PackedPart& part, std::span<const float> densities, float pixels_per_meter,
+                        float height, float depth_m, float nearest_pixels_per_meter,
+                        const FrameSettings& settings);
 
 // The whole decision for one part; projected with the settings.
 PartChoice choose_part(const PackedPart& part, const PartProjection& projected, const FrameSettings& settings,

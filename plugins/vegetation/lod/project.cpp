@@ -21,9 +21,9 @@ PartProjection project_part(const PackedPart& part, const PlantView& view, const
     const float per_meter = view.pixels_per_meter;
     if (part.kind == PackedPartKind::lines)
         return {per_meter, projected_area_px2(part, view, settings.projection),
-                projected_length_px(part, view, settings.projection)};
+                projected_length_px(part, view, settings.projection), view.direction_plant.y};
     if (settings.projection == ProjectionMode::measured && settings.weigh_by_facing)
-        return {per_meter, mean_projected_area_m2(part) * (per_meter * per_meter)};
+        return {per_meter, mean_projected_area_m2(part) * (per_meter * per_meter), 0.0f, view.direction_plant.y};
     return {per_meter, projected_area_px2(part, view, settings.projection)};
 }
 

@@ -27,6 +27,7 @@ struct PartProjection {
     float pixels_per_meter = 0.0f;
     float area_px2 = 0.0f;   // A'_p; of points that which asks for them
     float length_px = 0.0f;  // l'; only of lines
+    float height = 0.57735027f;  // sine, of the viewer over the plant; this is the mean of its squares
 };
 
 // A'_p in square pixels: what the part would cover if none of it hid another piece of it.

@@ -42,6 +42,22 @@ enum class PackedPartKind : uint32_t { points = 0, lines = 1 };
 // is resolved at d' = 1.
 inline constexpr uint32_t k_gain_levels = 16;
 
+// How points and lines are sized by the height that the plant is looked at from: from above other shares of it are hidden
+// than from the side. A size goes with 1 + second P_2 + fourth P_4, Legendre's polynomials of the height's sine, so that the
+// mean over all directions stays; and of plants that are turned about the vertical in all ways and lean by an angle whose
+// cosine is c, each is P(c) times as much.
+struct HeightGain {
+    float second = 0.0f, fourth = 0.0f;
+};
+inline float legendre_2(float x) { return 1.5f * x * x - 0.5f; }
+inline float legendre_4(float x) { return (4.375f * x * x - 3.75f) * x * x + 0.375f; }
+// As stored, in steps of 1 / k_height_steps.
+struct HeightSteps {
+    int8_t second, fourth;
+};
+inline constexpr float k_height_steps = 60.0f;
+HeightSteps round_height_gain(HeightGain gain);
+
 // One part, or one octree cell's share of a part. 256 bytes.
 struct PackedPart {
     char name[32];                            // UTF-8, zero-terminated
@@ -62,12 +78,22 @@ struct PackedPart {
     float mean_color_linear[3];
     std::array<float, k_gain_levels> coverage_gain;  // cook/measure_coverage.h
     uint32_t part;                                   // of a cell: index of the part it is cut from; else 0
-    uint32_t reserved[4];
+    std::array<HeightSteps, k_gain_levels / 2> height_gain;  // of every second level
 };
 static_assert(sizeof(PackedPart) == 256);
 
-// The part's coverage gain at a fill > 0, between the levels by (piecewise linear) logarithm. In [0.25, 4].
+// Of level k_gain_levels - 1 it is 1. The levels of height_gain are 1, 3, 5 ...
+inline float fill_at_level(uint32_t level) { return 1.0f / float(1u << (k_gain_levels - 1 - level)); }
+// The part's coverage gain at a fill > 0, between the levels by (piecewise linear) logarithm. In [1/16, 4].
 float gain_at(const PackedPart& part, float fill);
+// Its height_gain there, likewise.
+HeightGain height_gain_at(const PackedPart& part, float fill);
+// How many times as large points and lines are drawn where the plant is looked at from that height, in [-1, 1].
+inline constexpr float k_least_seen_gain = 0.1f, k_largest_seen_gain = 2.5f;
+inline float seen_gain(HeightGain gain, float height) {
+    const float seen = 1.0f + gain.second * legendre_2(height) + gain.fourth * legendre_4(height);
+    return seen < k_least_seen_gain ? k_least_seen_gain : seen < k_largest_seen_gain ? seen : k_largest_seen_gain;
+}
 
 // What is seen of the part in the mean over all directions, whatever its shape: half its surface, of which a closed one
 // shows half. Of its points, which share that surface out, each shows |n . v| of its share.

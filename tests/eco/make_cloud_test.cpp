@@ -4,6 +4,7 @@
 #include <map>
 #include <gtest/gtest.h>
 #include "plugins/vegetation/eco/part_chance.h"
+#include "plugins/vegetation/plant/point_run.h"
 #include "plugins/vegetation/eco/point_demand.h"
 #include "plugins/vegetation/lod/choose_part.h"
 #include "plugins/vegetation/plant/direction_form.h"
@@ -128,8 +129,11 @@ TEST(GatherCloud, PrefixesAreWhatThePlantsDraw) {
                         .points;
                 };
                 const std::vector<uint32_t>& numbers = shown[{i, p}];
+                const uint32_t first_point = first_point_of(
+                    stand.models[i], p,
+                    point_turn_mask(PointDemand(plants[stand.models[i].model].parts[p]).stored_count()));
                 for (size_t k = 0; k < numbers.size(); ++k)
-                    ASSERT_EQ(numbers[k], k) << "stored points in order";
+                    ASSERT_EQ(numbers[k], point_of_run(first_point, uint32_t(k))) << "the plant's run of points";
                 // Numbers of points come from floats, so one may come or go a trifle sooner.
                 const uint32_t low = drawn(density * 0.9999f), high = drawn(density * 1.0001f);
                 ASSERT_GE(numbers.size(), low) << "plant " << i << " part " << p << " at " << density;

@@ -240,8 +240,9 @@ const float* Horizon::slopes_at(uint32_t face, float u) const {
 bool Horizon::hidden(const Box& bounds_camera, float spread_px) const {
     if (ring_count_ == 0 || bounds_camera.empty()) return false;
     const vec3 far = glm::max(glm::abs(bounds_camera.min), glm::abs(bounds_camera.max));
-    // Diagonally, and a pixel more: what rounding moves on the picture.
-    const float beside_m = 1.4143f * (spread_px + 1.0f) / focal_px_ * glm::length(far);
+    // Diagonally, and a pixel more: what rounding moves on the picture. draw/splat_points.comp: up to twice as far from its
+    // middle a square comes towards the viewer.
+    const float beside_m = 1.4143f * (3.0f * spread_px + 1.0f) / focal_px_ * glm::length(far);
     const Box box{bounds_camera.min - beside_m, bounds_camera.max + beside_m};
     if (!is_finite(box.min) || !is_finite(box.max)) return false;
 

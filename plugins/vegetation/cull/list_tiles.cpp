@@ -37,11 +37,8 @@ TileList::SeenTile TileList::see(const Tile& tile, const Pending& at, const Frus
     seen.hidden =
         !seen.outside && settings.horizon && settings.horizon->hidden(seen.bounds_camera, settings.spread_px);
     seen.nearest_m = distance_m(seen.bounds_camera, vec3(0.0f));
-    const vec3 center = seen.bounds_camera.center();
-    // What is nearest asks for most.
-    const float focal_px = frustum.focal_px * off_axis_stretch(frustum, center, glm::length(center));
     auto density_at = [&](float nearest_m) {
-        const float most_px = focal_px / std::max(nearest_m, frustum.near_m);
+        const float most_px = most_pixels_per_meter(frustum, seen.bounds_camera, nearest_m);
         return most_px / settings.sample_distance_px * (most_px / settings.sample_distance_px);
     };
     const float soon_m = std::min(seen.nearest_m, distance_m(seen.bounds_camera, settings.motion_m));

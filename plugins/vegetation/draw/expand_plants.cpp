@@ -37,7 +37,6 @@ namespace {
 struct CloudView {
     float pixels_per_meter;  // at the tile's centre
     float nearest_pixels_per_meter;
-    float height;
 };
 
 CloudView view_of(const CloudTile& tile, const Frustum& frustum) {
@@ -45,8 +44,7 @@ CloudView view_of(const CloudTile& tile, const Frustum& frustum) {
     const float distance_m = glm::length(center);
     const float focal_px = frustum.focal_px * off_axis_stretch(frustum, center, distance_m);
     return {focal_px / std::max(distance_m, frustum.near_m),
-            focal_px / std::max(tile.nearest_m, frustum.near_m),
-            distance_m > 0.0f ? center.y / distance_m : 0.0f};
+            most_pixels_per_meter(frustum, tile.bounds_camera, tile.nearest_m)};
 }
 
 // Of the points that are drawn at most, where the cloud stands in for what is not in memory.
@@ -82,8 +80,9 @@ void expand_clouds(std::span<const CloudTile> tiles, const SceneGeometry& geomet
                      seen.nearest_pixels_per_meter *
                          std::sqrt(settings.splat_factor / std::max(tile.finest_density, 1e-12f)));
         // A tile around the image plane has no depth to go by: all of it is drawn as its nearest place asks for.
-        const float depth_m = std::max(glm::dot(frustum.forward, tile.bounds_camera.center()), 0.0f);
-        const PartChoice choice = choose_cloud(cloud.part, cloud.densities, seen.pixels_per_meter, seen.height, depth_m,
+        const vec3 center = tile.bounds_camera.center();
+        const float depth_m = std::max(glm::dot(frustum.forward, center), 0.0f);
+        const PartChoice choice = choose_cloud(cloud.part, cloud.densities, seen.pixels_per_meter, glm::length(center), depth_m,
                                                seen.nearest_pixels_per_meter, tile_settings);
         if (choice.points == 0) continue;
         // From the beginning also at rest: what is asked for is the prefix up to a density.

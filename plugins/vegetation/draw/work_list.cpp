@@ -11,6 +11,14 @@ namespace {
 
 constexpr size_t k_parts_a_job = 16;
 
+// Four times a normalised number of 16 bits each; splat_points.comp reads it.
+uint32_t pack_height_gain(HeightGain gain) {
+    auto pack = [](float value) {
+        return uint32_t(uint16_t(int16_t(std::clamp(value * 0.25f, -1.0f, 1.0f) * 32767.0f)));
+    };
+    return pack(gain.second) | pack(gain.fourth) << 16;
+}
+
 size_t lane_bucket(uint32_t count) { return count <= 4 ? 0 : count <= 8 ? 1 : count <= 16 ? 2 : 3; }
 
 }  // namespace
@@ -110,7 +118,8 @@ void WorkPart::add(const PartGeometry& geometry, const PartChoice& choice, uint3
     uint32_t first = place_of(geometry.point_count) + run_begin(first_point, choice.points);
     if (first >= geometry.point_count) first -= geometry.point_count;
     add_from(kind,
-             {geometry.first_point, 0, instance, geometry.first_owner, side, choice.point_owner_min,
+             {geometry.first_point, 0, instance, geometry.first_owner, side,
+              choice.density_limit_m2 > 0.0f ? pack_height_gain(choice.height_gain) : choice.point_owner_min,
               std::bit_cast<uint32_t>(choice.density_limit_m2), choice.mean_facing},
              1, first, geometry.point_count, choice.points, true);
 }

@@ -22,7 +22,7 @@ struct WorkEntry {
     uint32_t instance;      // its highest bit: k_ground_bit
     uint32_t first_owner;   // points_blend only; of clouds the points' densities
     float size_px;          // splat side or line width
-    uint32_t owner_min;     // points_blend; of lines the bits of PartChoice::turned_share
+    uint32_t owner_min;     // points_blend; of those that carry a density PartChoice::height_gain, of lines the bits of its turned_share
     uint32_t
         cull_back;  // triangles: 1: those that turn their back are left out; points: bits of density_limit_m2
     float mean_facing;  // PartChoice's

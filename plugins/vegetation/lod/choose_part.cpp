@@ -124,7 +124,7 @@ PartChoice choose_line_points(const PackedPart& part, float points_at_1px, const
 }
 
 PartChoice choose_cloud(const PackedPart& part, std::span<const float> densities, float pixels_per_meter,
-                        float height, float depth_m, float nearest_pixels_per_meter,
+                        float distance_m, float depth_m, float nearest_pixels_per_meter,
                         const FrameSettings& settings) {
     PartChoice choice;
     const float d = sample_distance(settings);
@@ -137,12 +137,11 @@ PartChoice choose_cloud(const PackedPart& part, std::span<const float> densities
     const float density = density_at(pixels_per_meter);
     choice.points = count_up_to(density_at(nearest_pixels_per_meter));
     choice.skipped_points = choice.points - std::min(choice.points, count_up_to(density));
-    choice.density_limit_m2 = depth_m > 0.0f ? density * depth_m * depth_m : INFINITY;
+    choice.density_limit_m2 = depth_m > 0.0f ? density * depth_m * depth_m * (depth_m / distance_m) : INFINITY;
     choice.splat_px = d;  // the squares of p = c_p A' / d'^2 points add up to c_p A'
     weigh_by_facing(choice, 0.5f, settings);
     if (settings.projection == ProjectionMode::measured && part.point_count > 0)
-        weigh_by_height(choice, height_gain_at(part, density * mean_projected_area_m2(part) / float(part.point_count)),
-                        height);
+        choice.height_gain = height_gain_at(part, density * mean_projected_area_m2(part) / float(part.point_count));
     return choice;
 }
 

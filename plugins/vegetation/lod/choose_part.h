@@ -23,8 +23,9 @@ struct PartChoice {
     // size.
     float mean_facing = 0.0f;
     // Of points that carry a density and a size (plant/line_points.h): drawn are those of `points` whose density T, times
-    // the square of their distance along the view in m, is at most this. 0: others, which are of one size.
+    // the cube of their distance along the view in m over their distance, is at most this. 0: others, which are of one size.
     float density_limit_m2 = 0.0f;
+    HeightGain height_gain;  // of those; each is looked at from a height of its own
 };
 
 // p = c_p A'_p / d'^2, times importance (ERRATA 1). Not rounded; finite and >= 0 for finite input.
@@ -52,10 +53,9 @@ PartChoice choose_line_points(const PackedPart& part, float points_at_1px, const
 
 // Points that stand for a whole tile: at each place those whose density is at most what it asks for at its own distance,
 // which are those the plants would draw there. densities: of the cloud's points, ascending (eco/make_cloud.h);
-// pixels_per_meter: at the tile's centre, height (PartProjection) over it, depth_m along the view;
-// nearest_pixels_per_meter >= pixels_per_meter.
+// pixels_per_meter: at the tile's centre, distance_m away, depth_m along the view; nearest_pixels_per_meter >= pixels_per_meter.
 PartChoice choose_cloud(const PackedPart& part, std::span<const float> densities, float pixels_per_meter,
-                        float height, float depth_m, float nearest_pixels_per_meter,
+                        float distance_m, float depth_m, float nearest_pixels_per_meter,
                         const FrameSettings& settings);
 
 // The whole decision for one part; projected with the settings.

@@ -89,7 +89,7 @@ float gain_at(const PackedPart& part, float fill);
 // Its height_gain there, likewise.
 HeightGain height_gain_at(const PackedPart& part, float fill);
 // How many times as large points and lines are drawn where the plant is looked at from that height, in [-1, 1].
-inline constexpr float k_least_seen_gain = 0.1f, k_largest_seen_gain = 2.5f;
+inline constexpr float k_least_seen_gain = 0.1f, k_largest_seen_gain = 1.6f;
 inline float seen_gain(HeightGain gain, float height) {
     const float seen = 1.0f + gain.second * legendre_2(height) + gain.fourth * legendre_4(height);
     return seen < k_least_seen_gain ? k_least_seen_gain : seen < k_largest_seen_gain ? seen : k_largest_seen_gain;

@@ -35,9 +35,9 @@ class FromAbove : public ::testing::Test {
         for (int i = 0; i < frames; ++i) {
             const float turn = 2.0f * k_pi * float(i) / float(frames);
             const float back_m = above_m * std::cos(-pitch_rad) / std::max(std::sin(-pitch_rad), 0.2f);
-            EXPECT_TRUE(hills_->draw(hills_->camera_at(back_m * std::sin(turn), back_m * std::cos(turn), above_m,
-                                                       turn, pitch_rad),
-                                     settings));
+            EXPECT_TRUE(hills_->draw(
+                hills_->camera_at(back_m * std::sin(turn), back_m * std::cos(turn), above_m, turn, pitch_rad),
+                settings));
             cloud_plants_ += hills_->vegetation->report().cloud_plants;
             plants_ += hills_->vegetation->report().plants;
             auto colors = hills_->read<uint32_t>(hills_->vegetation->color());
@@ -56,8 +56,8 @@ TEST_F(FromAbove, FarPlantsCoverWhatTheirTrianglesDo) {
         float above_m, pitch_rad;
         double bound[2];  // at d' = 1 and 2
     };
-    for (const Case& test :
-         {Case{900.0f, -1.3f, {0.06, 0.12}}, Case{300.0f, -1.3f, {0.05, 0.06}}, Case{300.0f, -0.6f, {0.05, 0.06}}}) {
+    for (const Case& test : {Case{900.0f, -1.3f, {0.06, 0.12}}, Case{300.0f, -1.3f, {0.05, 0.06}},
+                             Case{300.0f, -0.6f, {0.05, 0.06}}}) {
         FrameSettings settings;
         settings.view = RepresentationView::coverage;
         settings.level_of_detail = false;
@@ -66,7 +66,8 @@ TEST_F(FromAbove, FarPlantsCoverWhatTheirTrianglesDo) {
         for (int i = 0; i < 2; ++i) {
             settings.sample_distance_px = float(i + 1);
             cloud_plants_ = plants_ = 0;
-            const double error = mean_covered(test.above_m, test.pitch_rad, k_frames, settings) / wanted - 1.0;
+            const double error =
+                mean_covered(test.above_m, test.pitch_rad, k_frames, settings) / wanted - 1.0;
             std::printf("%.0f m, pitch %.1f, d' = %d: %+.1f %% of %.0f px, %.0f %% of the plants in clouds\n",
                         double(test.above_m), double(test.pitch_rad), i + 1, 100.0 * error, wanted,
                         100.0 * double(cloud_plants_) / double(plants_));

@@ -7,7 +7,8 @@ namespace coppice {
 void CoverageRaster::triangle(vec3 a, vec3 b, vec3 c) {
     const vec3 normal = glm::cross(b - a, c - a);
     const bool on_edge = std::fabs(normal.z) < 1.0e-12f;  // then hardly a pixel's centre lies inside
-    const float distance_x = on_edge ? 0.0f : -normal.x / normal.z, distance_y = on_edge ? 0.0f : -normal.y / normal.z;
+    const float distance_x = on_edge ? 0.0f : -normal.x / normal.z,
+                distance_y = on_edge ? 0.0f : -normal.y / normal.z;
     int32_t row_last = pixel(std::max({a.y, b.y, c.y}));
     for (int32_t row = pixel(std::min({a.y, b.y, c.y})); row < row_last; ++row) {
         float y = float(row) + 0.5f, left = 1.0e30f, right = -1.0e30f;

@@ -94,7 +94,8 @@ void keep_far_points(PlantBlocks& packed) {
     for (uint32_t level = 0; level < k_gain_levels; ++level)
         part.coverage_gain[level] = gain_at(before, fill_at_level(level) * share);
     for (uint32_t level = 0; level < part.height_gain.size(); ++level)
-        part.height_gain[level] = round_height_gain(height_gain_at(before, fill_at_level(2 * level + 1) * share));
+        part.height_gain[level] =
+            round_height_gain(height_gain_at(before, fill_at_level(2 * level + 1) * share));
     part.point_count = kept;
     part.point_radius_m = float(std::sqrt(double(part.area_m2) / (double(kept) * double(k_pi))));
     packed.points.resize(kept);

@@ -46,7 +46,8 @@ View view_of(uint32_t index, uint32_t count) {
     View view;
     view.band = index % k_bands;
     const float low = k_band_begin[view.band], high = k_band_begin[view.band + 1];
-    const float height = low + (high - low) * (float(index / k_bands) + 0.5f) / float((count + k_bands - 1) / k_bands);
+    const float height =
+        low + (high - low) * (float(index / k_bands) + 0.5f) / float((count + k_bands - 1) / k_bands);
     const float around = 2.0f * k_pi * 0.61803399f * float(index), level = std::sqrt(1.0f - height * height);
     view.direction = vec3(-level * portable_cos(around), -height, -level * portable_sin(around));
     view.right = perpendicular_to(view.direction);
@@ -82,11 +83,11 @@ struct Part {
     const PlantBlocks* blocks;
     const PackedPart* packed;
     bool lines;
-    float area_m2, length_m;     // in the mean over directions
-    float top_density;           // where the table of gains ends, in square pixels a square metre
+    float area_m2, length_m;  // in the mean over directions
+    float top_density;        // where the table of gains ends, in square pixels a square metre
     std::vector<LinePoint> line_points;
-    Bands seen_m2{};            // of the triangles
-    Bands limit{};              // the gain where points do not meet
+    Bands seen_m2{};  // of the triangles
+    Bands limit{};    // the gain where points do not meet
 };
 
 class PlantCoverage {
@@ -94,8 +95,15 @@ class PlantCoverage {
     explicit PlantCoverage(std::span<const PlantBlocks> plant) {
         for (const PlantBlocks& blocks : plant) {
             const PackedPart& packed = blocks.parts[0];
-            Part part{&blocks, &packed, packed.kind == PackedPartKind::lines, mean_projected_area_m2(packed),
-                      mean_projected_length_m(packed), 0.0f, {}, {}, {}};
+            Part part{&blocks,
+                      &packed,
+                      packed.kind == PackedPartKind::lines,
+                      mean_projected_area_m2(packed),
+                      mean_projected_length_m(packed),
+                      0.0f,
+                      {},
+                      {},
+                      {}};
             const float fill_m = part.lines ? part.length_m / part.area_m2 : 0.0f;
             part.top_density = part.lines ? fill_m * fill_m : float(packed.point_count) / part.area_m2;
             for (uint32_t i = 0; i < line_point_count(packed); ++i)
@@ -136,15 +144,17 @@ class PlantCoverage {
             const float octave = float(k_gain_levels - 1 - level) * (part.lines ? 2.0f : 1.0f);
             const float at = std::clamp(portable_log2(top_density_ / part.top_density) + octave, 0.0f,
                                         float(levels_.size() - 1));
-            const size_t before = std::min(size_t(at), levels_.size() - 1), behind = std::min(before + 1, levels_.size() - 1);
+            const size_t before = std::min(size_t(at), levels_.size() - 1),
+                         behind = std::min(before + 1, levels_.size() - 1);
             const float share = at - float(before);
             const Gain &a = levels_[before][index], &b = levels_[behind][index];
             const float gain = a.mean() + (b.mean() - a.mean()) * share;
             packed.coverage_gain[level] = std::clamp(gain, k_least_gain, k_largest_gain);
             if (level % 2 == 0) continue;
             const HeightGain low = a.by_height(), high = b.by_height();
-            packed.height_gain[level / 2] = round_height_gain({low.second + (high.second - low.second) * share,
-                                                               low.fourth + (high.fourth - low.fourth) * share});
+            packed.height_gain[level / 2] =
+                round_height_gain({low.second + (high.second - low.second) * share,
+                                   low.fourth + (high.fourth - low.fourth) * share});
         }
     }
 
@@ -152,7 +162,8 @@ class PlantCoverage {
     vec3 place(const View& view, const PackedVertex& v, float pixels_per_meter, float side) const {
         const vec3 p = vec3(v.x_plant, v.y_plant, v.z_plant) - bounds_.center();
         return {glm::dot(view.right, p) * pixels_per_meter + view.shift.x + 0.5f * side,
-                glm::dot(view.up, p) * pixels_per_meter + view.shift.y + 0.5f * side, glm::dot(view.direction, p)};
+                glm::dot(view.up, p) * pixels_per_meter + view.shift.y + 0.5f * side,
+                glm::dot(view.direction, p)};
     }
     void draw_triangles(CoverageRaster& raster, const Part& part, const View& view, float pixels_per_meter,
                         float side) const {
@@ -190,7 +201,8 @@ class PlantCoverage {
 
     // In the mean over places of the pixel grid a picture of any resolution shows the same share.
     void measure_seen() {
-        const float side = float(k_truth_side), pixels_per_meter = 0.5f * (side - 4.0f) / std::max(radius_m_, 1.0e-6f);
+        const float side = float(k_truth_side),
+                    pixels_per_meter = 0.5f * (side - 4.0f) / std::max(radius_m_, 1.0e-6f);
         const std::vector<Bands> seen =
             count_seen(k_truth_side, k_truth_views, [&](CoverageRaster& raster, const View& view, uint32_t) {
                 for (size_t p = 0; p < parts_.size(); ++p) {
@@ -198,7 +210,8 @@ class PlantCoverage {
                     draw_triangles(raster, parts_[p], view, pixels_per_meter, side);
                 }
             });
-        const double to_m2 = double(k_bands) / k_truth_views / (double(pixels_per_meter) * double(pixels_per_meter));
+        const double to_m2 =
+            double(k_bands) / k_truth_views / (double(pixels_per_meter) * double(pixels_per_meter));
         for (size_t p = 0; p < parts_.size(); ++p)
             for (size_t band = 0; band < k_bands; ++band) parts_[p].seen_m2[band] = seen[p][band] * to_m2;
     }
@@ -218,21 +231,22 @@ class PlantCoverage {
             };
             for (const LinePoint& point : part.line_points) add(point.vertex, point.width_share);
             const uint32_t points = part.packed->point_count;
-            for (uint32_t k = 0; k < points && k <= point_turn_mask(points); ++k) add(part.blocks->points[k], 1.0f);
+            for (uint32_t k = 0; k < points && k <= point_turn_mask(points); ++k)
+                add(part.blocks->points[k], 1.0f);
             if (count > 0.0)
-                drawn_m2[view.band] += double(part.area_m2) * facing / count * (double(k_bands) / k_truth_views);
+                drawn_m2[view.band] +=
+                    double(part.area_m2) * facing / count * (double(k_bands) / k_truth_views);
         }
         for (size_t band = 0; band < k_bands; ++band)
-            part.limit[band] = drawn_m2[band] > 0.0
-                                   ? std::clamp(part.seen_m2[band] / drawn_m2[band], double(k_least_gain),
-                                                double(k_largest_gain))
-                                   : 1.0;
+            part.limit[band] = drawn_m2[band] > 0.0 ? std::clamp(part.seen_m2[band] / drawn_m2[band],
+                                                                 double(k_least_gain), double(k_largest_gain))
+                                                    : 1.0;
     }
 
     // What lod/choose_part.cpp would draw at a sample distance of one pixel, were there no triangles but of parts that
     // are nearer than their gains tell.
-    void draw_part(CoverageRaster& raster, const Part& part, const Gain& of_part, const View& view, uint32_t draw,
-                   float density, float side) const {
+    void draw_part(CoverageRaster& raster, const Part& part, const Gain& of_part, const View& view,
+                   uint32_t draw, float density, float side) const {
         const float per_meter = std::sqrt(density), importance = part.packed->importance;
         if (density > 1.001f * part.top_density) return draw_triangles(raster, part, view, per_meter, side);
         const float height = view.direction.y, gain = of_part.mean();
@@ -255,8 +269,8 @@ class PlantCoverage {
         }
         const uint32_t stored = part.packed->line_count, stored_points = uint32_t(part.line_points.size());
         const float points = importance * area_px2;
-        const float points_from_px = std::min(part.packed->line_length_m / float(stored) * per_meter,
-                                              std::sqrt(points / 8.0f));
+        const float points_from_px =
+            std::min(part.packed->line_length_m / float(stored) * per_meter, std::sqrt(points / 8.0f));
         if (0.75f + 0.5f * random_of(draw, part, 1) >= points_from_px) {
             const uint32_t count = std::min(stored_points, uint32_t(points + chance));
             const uint32_t begin = run_begin(mix_bits(draw) & point_turn_mask(stored_points), count);
@@ -294,12 +308,14 @@ class PlantCoverage {
                                          double(part.packed->point_count + part.packed->line_count));
         }
         const double affordable = k_primitive_budget / primitives;
-        const uint32_t views = uint32_t(std::clamp(std::min(k_wanted_pixels / seen_px2, affordable), k_least_views, k_most_views)) / k_bands * k_bands;
+        const uint32_t views = uint32_t(std::clamp(std::min(k_wanted_pixels / seen_px2, affordable),
+                                                   k_least_views, k_most_views)) /
+                               k_bands * k_bands;
         const float side = std::ceil(2.0f * radius_m_ * std::sqrt(density)) + 6.0f;
         std::vector<Bands> last_gain(parts_.size()), last_drawn(parts_.size());
         for (int round = 0; round < k_rounds; ++round) {
-            const std::vector<Bands> drawn =
-                count_seen(uint32_t(side), views, [&](CoverageRaster& raster, const View& view, uint32_t draw) {
+            const std::vector<Bands> drawn = count_seen(
+                uint32_t(side), views, [&](CoverageRaster& raster, const View& view, uint32_t draw) {
                     for (size_t p = 0; p < parts_.size(); ++p) {
                         raster.set_part(uint32_t(p));
                         draw_part(raster, parts_[p], gains[p], view, draw, density, side);
@@ -317,13 +333,13 @@ class PlantCoverage {
                     const double log_drawn = double(portable_log2(float(drawn[p][band])));
                     double power = 1.0;
                     if (round > 0 && log_gain != last_gain[p][band])
-                        power = std::clamp((log_drawn - last_drawn[p][band]) / (log_gain - last_gain[p][band]),
-                                           0.4, 1.0);
+                        power = std::clamp(
+                            (log_drawn - last_drawn[p][band]) / (log_gain - last_gain[p][band]), 0.4, 1.0);
                     last_gain[p][band] = log_gain;
                     last_drawn[p][band] = log_drawn;
                     const double missing = double(portable_log2(float(wanted))) - log_drawn;
-                    gain = std::clamp(gain * double(portable_exp2(float(missing / power))), double(k_least_gain),
-                                      double(k_largest_gain));
+                    gain = std::clamp(gain * double(portable_exp2(float(missing / power))),
+                                      double(k_least_gain), double(k_largest_gain));
                 }
             }
         }

@@ -37,9 +37,11 @@ inline float most_pixels_per_meter(const Frustum& frustum, const Box& box, float
     const vec3 center = box.center();
     float most = off_axis_stretch(frustum, center, glm::length(center)) / std::max(nearest_m, frustum.near_m);
     for (uint32_t i = 0; i < 8; ++i) {
-        const vec3 corner(i & 1 ? box.max.x : box.min.x, i & 2 ? box.max.y : box.min.y, i & 4 ? box.max.z : box.min.z);
+        const vec3 corner(i & 1 ? box.max.x : box.min.x, i & 2 ? box.max.y : box.min.y,
+                          i & 4 ? box.max.z : box.min.z);
         const float distance_m = glm::length(corner);
-        most = std::max(most, off_axis_stretch(frustum, corner, distance_m) / std::max(distance_m, frustum.near_m));
+        most = std::max(most,
+                        off_axis_stretch(frustum, corner, distance_m) / std::max(distance_m, frustum.near_m));
     }
     return frustum.focal_px * most;
 }

@@ -27,8 +27,9 @@ void draw_plants(const SeenPlants& seen, const SceneGeometry& geometry, const Fr
                   if (std::exchange(with_instance, &plant) != &plant)
                       instance = work.add_instance(plant.instance);
                   const PartGeometry& place = geometry.part_geometry[part];
-                  work.add(place, choice, instance, turn,
-                           first_point_of(plant.model, part - plant.first_part_of_model, place.point_turn_mask));
+                  work.add(
+                      place, choice, instance, turn,
+                      first_point_of(plant.model, part - plant.first_part_of_model, place.point_turn_mask));
               });
 }
 
@@ -82,8 +83,9 @@ void expand_clouds(std::span<const CloudTile> tiles, const SceneGeometry& geomet
         // A tile around the image plane has no depth to go by: all of it is drawn as its nearest place asks for.
         const vec3 center = tile.bounds_camera.center();
         const float depth_m = std::max(glm::dot(frustum.forward, center), 0.0f);
-        const PartChoice choice = choose_cloud(cloud.part, cloud.densities, seen.pixels_per_meter, glm::length(center), depth_m,
-                                               seen.nearest_pixels_per_meter, tile_settings);
+        const PartChoice choice =
+            choose_cloud(cloud.part, cloud.densities, seen.pixels_per_meter, glm::length(center), depth_m,
+                         seen.nearest_pixels_per_meter, tile_settings);
         if (choice.points == 0) continue;
         // From the beginning also at rest: what is asked for is the prefix up to a density.
         work.add(cloud.geometry, choice,

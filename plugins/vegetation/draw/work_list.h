@@ -22,7 +22,8 @@ struct WorkEntry {
     uint32_t instance;      // its highest bit: k_ground_bit
     uint32_t first_owner;   // points_blend only; of clouds the points' densities
     float size_px;          // splat side or line width
-    uint32_t owner_min;     // points_blend; of those that carry a density PartChoice::height_gain, of lines the bits of its turned_share
+    uint32_t
+        owner_min;  // points_blend; of those that carry a density PartChoice::height_gain, of lines the bits of its turned_share
     uint32_t
         cull_back;  // triangles: 1: those that turn their back are left out; points: bits of density_limit_m2
     float mean_facing;  // PartChoice's
@@ -70,8 +71,8 @@ class WorkPart {
     friend class WorkList;
     void add_triangles(uint32_t first_vertex, uint32_t count, uint32_t instance, bool cull_back);
     void add_run(WorkKind kind, WorkEntry entry, uint32_t vertices_a_primitive);
-    void add_from(WorkKind kind, WorkEntry entry, uint32_t vertices_a_primitive, uint32_t first, uint32_t stored,
-                  uint32_t count, bool has_owners);
+    void add_from(WorkKind kind, WorkEntry entry, uint32_t vertices_a_primitive, uint32_t first,
+                  uint32_t stored, uint32_t count, bool has_owners);
     void push(size_t bin, const WorkEntry& entry);
 
     // Of each kind first the groups, then the lanes' buckets: the order of a layout.

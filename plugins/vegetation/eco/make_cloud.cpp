@@ -180,7 +180,8 @@ TileCloud gather_cloud(std::span<const PlantPosition> positions, std::span<const
                                          : 0.0;
             totals.exhausted_area_m2[density_step(exhausted)] += area_m2;
             const uint32_t number = uint32_t(p);
-            sources.push_back({&demand, uint32_t(i), number, scale_square, upright, part_chance(models[i], number),
+            sources.push_back({&demand, uint32_t(i), number, scale_square, upright,
+                               part_chance(models[i], number),
                                first_point_of(models[i], number, point_turn_mask(demand.stored_count()))});
         }
     }
@@ -271,8 +272,9 @@ TileCloud merge_clouds(std::span<const TileCloud* const> children, std::span<con
             if (child->points.empty()) continue;
             const double fill =
                 density * double(mean_projected_area_m2(child->part)) / double(child->part.point_count);
-            const auto drawn = std::upper_bound(child->densities.begin(), child->densities.end(), float(density)) -
-                               child->densities.begin();
+            const auto drawn =
+                std::upper_bound(child->densities.begin(), child->densities.end(), float(density)) -
+                child->densities.begin();
             sum.add(double(drawn), height_gain_at(child->part, float(fill)), {1.0f, 1.0f});
         }
         return sum;

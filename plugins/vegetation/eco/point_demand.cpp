@@ -22,7 +22,8 @@ PointDemand::PointDemand(const PackedPart& part, float model_importance)
     }
     double most = 0.0;
     for (size_t level = 0; level < k_gain_levels; ++level) {
-        most = std::max(most, fill_power(double(fill_at_level(uint32_t(level)))) * double(part.coverage_gain[level]));
+        most = std::max(
+            most, fill_power(double(fill_at_level(uint32_t(level)))) * double(part.coverage_gain[level]));
         reach_[level] = most;
     }
 }

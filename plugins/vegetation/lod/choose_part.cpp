@@ -137,11 +137,13 @@ PartChoice choose_cloud(const PackedPart& part, std::span<const float> densities
     const float density = density_at(pixels_per_meter);
     choice.points = count_up_to(density_at(nearest_pixels_per_meter));
     choice.skipped_points = choice.points - std::min(choice.points, count_up_to(density));
-    choice.density_limit_m2 = depth_m > 0.0f ? density * depth_m * depth_m * (depth_m / distance_m) : INFINITY;
+    choice.density_limit_m2 =
+        depth_m > 0.0f ? density * depth_m * depth_m * (depth_m / distance_m) : INFINITY;
     choice.splat_px = d;  // the squares of p = c_p A' / d'^2 points add up to c_p A'
     weigh_by_facing(choice, 0.5f, settings);
     if (settings.projection == ProjectionMode::measured && part.point_count > 0)
-        choice.height_gain = height_gain_at(part, density * mean_projected_area_m2(part) / float(part.point_count));
+        choice.height_gain =
+            height_gain_at(part, density * mean_projected_area_m2(part) / float(part.point_count));
     return choice;
 }
 
@@ -208,7 +210,8 @@ float widest_spread_px(float least_importance, float most_line_width, const Fram
     if (!settings.level_of_detail) return 0.0f;
     // choose_points: a part's last points cover up to 1.5 times the square of d' over importance; those of lines are as
     // large as these are wide. Half of that is seen in the mean over directions. From above they may be larger.
-    const float share = std::max(1.5f, most_line_width) * (settings.weigh_by_facing ? 2.0f : 1.0f) * k_largest_seen_gain;
+    const float share =
+        std::max(1.5f, most_line_width) * (settings.weigh_by_facing ? 2.0f : 1.0f) * k_largest_seen_gain;
     const float splat_px = sample_distance(settings) * std::sqrt(share / least_importance);
     const float line_px = std::min(
         1.4143f * line_sample_distance(settings) / least_importance * most_line_width * k_largest_seen_gain,

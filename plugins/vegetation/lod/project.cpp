@@ -23,7 +23,8 @@ PartProjection project_part(const PackedPart& part, const PlantView& view, const
         return {per_meter, projected_area_px2(part, view, settings.projection),
                 projected_length_px(part, view, settings.projection), view.direction_plant.y};
     if (settings.projection == ProjectionMode::measured && settings.weigh_by_facing)
-        return {per_meter, mean_projected_area_m2(part) * (per_meter * per_meter), 0.0f, view.direction_plant.y};
+        return {per_meter, mean_projected_area_m2(part) * (per_meter * per_meter), 0.0f,
+                view.direction_plant.y};
     return {per_meter, projected_area_px2(part, view, settings.projection)};
 }
 

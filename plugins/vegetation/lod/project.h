@@ -25,8 +25,8 @@ inline float pixels_per_meter(float focal_px, float distance_m, float radius_m, 
 // What a part would cover, whatever d'.
 struct PartProjection {
     float pixels_per_meter = 0.0f;
-    float area_px2 = 0.0f;   // A'_p; of points that which asks for them
-    float length_px = 0.0f;  // l'; only of lines
+    float area_px2 = 0.0f;       // A'_p; of points that which asks for them
+    float length_px = 0.0f;      // l'; only of lines
     float height = 0.57735027f;  // sine, of the viewer over the plant; this is the mean of its squares
 };
 

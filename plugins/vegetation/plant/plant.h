@@ -92,7 +92,9 @@ HeightGain height_gain_at(const PackedPart& part, float fill);
 inline constexpr float k_least_seen_gain = 0.1f, k_largest_seen_gain = 1.6f;
 inline float seen_gain(HeightGain gain, float height) {
     const float seen = 1.0f + gain.second * legendre_2(height) + gain.fourth * legendre_4(height);
-    return seen < k_least_seen_gain ? k_least_seen_gain : seen < k_largest_seen_gain ? seen : k_largest_seen_gain;
+    return seen < k_least_seen_gain     ? k_least_seen_gain
+           : seen < k_largest_seen_gain ? seen
+                                        : k_largest_seen_gain;
 }
 
 // What is seen of the part in the mean over all directions, whatever its shape: half its surface, of which a closed one

@@ -39,9 +39,10 @@ SubstituteLadder ladder_of(const Plant& plant) {
 }
 
 // A place of the plant on a picture that looks along `axis`.
-vec2 on_picture(const Plant& plant, const PackedVertex& v, int axis, float pixels_per_meter) {
+vec3 on_picture(const Plant& plant, const PackedVertex& v, int axis, float pixels_per_meter) {
     const vec3 p = (place_of(v) - plant.bounds_plant.center()) * pixels_per_meter;
-    return vec2(p[(axis + 1) % 3], p[(axis + 2) % 3]) + 0.5f * float(k_side_px);
+    return {p[(axis + 1) % 3] + 0.5f * float(k_side_px), p[(axis + 2) % 3] + 0.5f * float(k_side_px),
+            p[axis]};
 }
 
 float largest_extent_m(const Plant& plant) {

@@ -67,10 +67,10 @@ std::vector<double> covered_pixels(const std::vector<Leaf>& leaves, const Box& b
         const vec3 d = any_direction(random), x = perpendicular_to(d), y = glm::cross(d, x);
         raster.begin();
         for (const Leaf& leaf : leaves) {
-            vec2 p[4];
+            vec3 p[4];
             for (size_t k = 0; k < 4; ++k) {
                 const vec3 away = (leaf.corners_plant[k] - box.center()) * scale;
-                p[k] = vec2(glm::dot(away, x), glm::dot(away, y)) + 0.5f * k_side_px;
+                p[k] = vec3(glm::dot(away, x), glm::dot(away, y), 0.0f) + 0.5f * k_side_px;
             }
             raster.triangle(p[0], p[1], p[2]);
             raster.triangle(p[0], p[2], p[3]);

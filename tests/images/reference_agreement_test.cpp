@@ -3,7 +3,7 @@
 // large again. Colour: mean linear radiance of what is covered, without shadows, before exposure and tone curve; the
 // largest difference of a channel over the mean of the three. Means over views, each drawn at several places of the
 // pixel grid with other seeds; 64 rays a pixel.
-// Measured: coverage within 2.8 %; colour within 3.4 % (pine), 3.1 (birch), 4.7 (oak at 60 px), 3.7 (grass) and 2.9 (sunflower).
+// Measured: coverage within 2.1 %; colour within 4.4 % (pine at 60 px), 2.2 (birch), 3.6 (oak), 3.7 (grass) and 4.2 (sunflower at 60 px).
 // With every triangle 1 % and 3.4 % (grass, whose blades are curved).
 #include <gtest/gtest.h>
 #include "runtime/core/random.h"
@@ -222,9 +222,9 @@ TEST_P(ReferenceAgreement, PlantsAreAsLargeAndAsBrightAsTraced) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Species, ReferenceAgreement,
-                         ::testing::Values(SpeciesBound{"pine", 0.04}, SpeciesBound{"birch", 0.04},
-                                           SpeciesBound{"oak", 0.05}, SpeciesBound{"grass", 0.05},
-                                           SpeciesBound{"sunflower", 0.04}),
+                         ::testing::Values(SpeciesBound{"pine", 0.045}, SpeciesBound{"birch", 0.03},
+                                           SpeciesBound{"oak", 0.04}, SpeciesBound{"grass", 0.05},
+                                           SpeciesBound{"sunflower", 0.045}),
                          [](const auto& info) { return std::string(info.param.name); });
 
 }  // namespace

@@ -39,7 +39,7 @@ TEST(Rest, FarTilesCoverWhatTheyDoInMotion) {
         const double share = covered(*colors);
         if (frame == 0) {
             in_motion = share;
-            EXPECT_GT(in_motion, 0.01);
+            EXPECT_GT(in_motion, 0.005);
         }
         // d' falls from 1 to a quarter, which single frames that far away differ by 9 % for.
         EXPECT_NEAR(share, in_motion, 0.12 * in_motion) << "frame " << frame;

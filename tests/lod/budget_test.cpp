@@ -417,7 +417,7 @@ TEST(SampleDistance, ChooseCloudDrawsTheBudget) {
         settings.sample_distance_px = solve_sample_distance(histogram, 0, budget, k_least, k_most);
         double points = 0.0;
         for (const Cloud& cloud : clouds) {
-            const PartChoice choice = choose_cloud(cloud.densities, cloud.pixels_per_meter, 10.0f,
+            const PartChoice choice = choose_cloud({}, cloud.densities, cloud.pixels_per_meter, 10.0f, 10.0f,
                                                    1.5f * cloud.pixels_per_meter, settings);
             points += double(choice.points - choice.skipped_points);
         }

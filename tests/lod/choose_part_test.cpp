@@ -37,7 +37,7 @@ PackedPart twig_part() {
 PartChoice choose_points(const PackedPart& part, float area_px2, const FrameSettings& settings,
                          float chance) {
     const PartRule rule(part, settings);
-    return rule.expand(rule.choose({0.0f, area_px2, 0.0f, 0.0f}, chance));
+    return rule.expand(rule.choose({0.0f, area_px2, 0.0f, 0.0f, 1.0f}, chance), 1.0f);
 }
 
 PlantView view_at(float pixels_per_meter) { return {vec3(0, 0, -1), pixels_per_meter}; }
@@ -241,7 +241,10 @@ TEST(ChooseParts, ManyAreChosenAsOneIs) {
     trunk.line_count = 1;
     bare.point_count = 0;
     for (PackedPart* part : {&leaves, &twigs, &trunk})
-        for (float& gain : part->coverage_gain) gain = 0.7f + 0.6f * random.next_unit();
+        for (size_t level = 0; level < k_gain_levels; ++level) {
+            part->coverage_gain[level] = 0.7f + 0.6f * random.next_unit();
+            part->height_gain[level / 2] = {int8_t(level * 3), int8_t(-20 + int(level) * 2)};
+        }
     for (const PackedPart* part : {&leaves, &twigs, &trunk, &bare})
         for (ProjectionMode mode : {ProjectionMode::measured, ProjectionMode::isotropic})
             for (float d : {0.3f, 1.0f, 2.5f})
@@ -269,6 +272,7 @@ TEST(ChooseParts, ManyAreChosenAsOneIs) {
                     for (size_t i = 0; i < k_count; ++i) {
                         const PartDemand demand = rule.demand(project_part(*part, views[i], settings));
                         const PartRule::Choice choice = rule.choose(demand, chances[i]);
+                        ASSERT_EQ(demands.side_gain[i], demand.side_gain) << i;
                         ASSERT_EQ(choices.form[i], choice.form) << i;
                         ASSERT_EQ(choices.count[i], choice.count) << i;
                         ASSERT_EQ(choices.asked[i], choice.asked) << i;

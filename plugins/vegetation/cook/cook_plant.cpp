@@ -77,10 +77,6 @@ class PartPacker {
             packed_.bounds_min[axis] = bounds_.min[axis];
             packed_.bounds_max[axis] = bounds_.max[axis];
         }
-        packed_.coverage_gain = measure_coverage_gain(
-            packed_, std::span(plant_.triangle_vertices).subspan(3 * size_t(packed_.first_triangle)),
-            std::span(plant_.points).subspan(packed_.first_point),
-            std::span(plant_.line_vertices).subspan(2 * size_t(packed_.first_line)));
         plant_.bounds_plant.include(bounds_);
         plant_.parts.push_back(packed_);
         return {};
@@ -373,6 +369,7 @@ Result<std::vector<std::byte>> cook_plant(const PlantDescription& plant, const C
         advance(parts[i].shape.part.indices.size() / 3);
         parts[i] = {};
     }
+    measure_coverage(packed);
     const std::vector<std::vector<uint32_t>> cell_of_unit = build_octree(units, bounds_plant);
     PlantBlocks cells;
     for (size_t i = 0; i < packed.size(); ++i) {

@@ -92,8 +92,10 @@ void keep_far_points(PlantBlocks& packed) {
     const float share = float(kept) / float(part.point_count);
     const PackedPart before = part;
     for (uint32_t level = 0; level < k_gain_levels; ++level)
-        part.coverage_gain[level] =
-            gain_at(before, portable_exp2(float(level) - float(k_gain_levels - 1)) * share);
+        part.coverage_gain[level] = gain_at(before, fill_at_level(level) * share);
+    for (uint32_t level = 0; level < part.height_gain.size(); ++level)
+        part.height_gain[level] =
+            round_height_gain(height_gain_at(before, fill_at_level(2 * level + 1) * share));
     part.point_count = kept;
     part.point_radius_m = float(std::sqrt(double(part.area_m2) / (double(kept) * double(k_pi))));
     packed.points.resize(kept);

@@ -58,10 +58,10 @@ LeafCoverage::Pixels LeafCoverage::count(std::span<const Leaf> leaves) const {
             CoverageRaster raster(k_side_px);
             raster.begin();
             for (const Leaf& leaf : leaves) {
-                std::array<vec2, 4> p;
+                std::array<vec3, 4> p;
                 for (size_t k = 0; k < 4; ++k) {
                     const vec3 away = (leaf.corners_plant[k] - center_) * pixels_per_m_;
-                    p[k] = vec2(glm::dot(away, x), glm::dot(away, y)) + 0.5f * float(k_side_px);
+                    p[k] = vec3(glm::dot(away, x), glm::dot(away, y), 0.0f) + 0.5f * float(k_side_px);
                 }
                 raster.triangle(p[0], p[1], p[2]);
                 raster.triangle(p[0], p[2], p[3]);

@@ -2,182 +2,361 @@
 
 #include <algorithm>
 #include <bit>
-#include <vector>
 #include "plugins/vegetation/cook/coverage_raster.h"
+#include "plugins/vegetation/plant/line_points.h"
+#include "plugins/vegetation/plant/point_run.h"
+#include "runtime/core/hash.h"
 #include "runtime/core/jobs.h"
 #include "runtime/core/random.h"
 
 namespace coppice {
 namespace {
 
-constexpr uint32_t k_side_limit = 2048;
-constexpr double k_wanted_pixels = 30000.0;  // over all views of a level: keeps its noise under 1 %
-constexpr double k_triangle_budget = 3.0e6;  // over all views of a level
-constexpr uint32_t k_least_views = 8, k_most_views = 8192;
-// Below these a level says what the next larger one says.
-constexpr float k_least_area_px2 = 0.5f;
-constexpr double k_least_pixels = 2000.0;  // over all views: noise under 3 %
-constexpr int k_rounds = 6;
-constexpr float k_settled = 0.001f;  // octaves
+constexpr uint32_t k_truth_side = 640, k_truth_views = 120;
+constexpr float k_largest_side = 2048.0f;
+// Of a level, over all its views.
+constexpr double k_wanted_pixels = 100000.0, k_primitive_budget = 3.0e6;
+constexpr double k_least_views = 24.0, k_most_views = 65536.0;
+constexpr double k_least_pixels = 300.0;  // of a part, in the views of a band: less says nothing
+constexpr double k_least_seen_px2 = 0.4;  // of the plant: below, hardly any two points meet
+constexpr int k_rounds = 4;
+constexpr size_t k_jobs = 16;  // of a level
+constexpr float k_least_gain = 1.0f / 16.0f, k_largest_gain = 4.0f;
+
+// Views from the side, from higher up and from above: by the sine of their height, in which directions are even.
+constexpr size_t k_bands = 3;
+constexpr std::array<float, k_bands + 1> k_band_begin{0.0f, 0.5f, 0.85f, 1.0f};
+using Bands = std::array<double, k_bands>;
+
+double share_of(size_t band) { return double(k_band_begin[band + 1] - k_band_begin[band]); }
+double mean_of(const Bands& bands) {
+    double mean = 0.0;
+    for (size_t band = 0; band < k_bands; ++band) mean += share_of(band) * bands[band];
+    return mean;
+}
 
 struct View {
-    vec3 right, up;
+    vec3 right, up, direction;
+    size_t band;
     vec2 shift;
-    float chance;
 };
 
-// Directions well spread over the upper hemisphere, the zenith left out.
+// As many of each band, well spread.
 View view_of(uint32_t index, uint32_t count) {
-    float height = 0.95f * (float(index) + 0.5f) / float(count);
-    float around = 2.0f * k_pi * 0.61803399f * float(index), level = std::sqrt(1.0f - height * height);
-    vec3 direction(-level * portable_cos(around), -height, -level * portable_sin(around));
     View view;
-    view.right = perpendicular_to(direction);
-    view.up = glm::cross(view.right, direction);
+    view.band = index % k_bands;
+    const float low = k_band_begin[view.band], high = k_band_begin[view.band + 1];
+    const float height =
+        low + (high - low) * (float(index / k_bands) + 0.5f) / float((count + k_bands - 1) / k_bands);
+    const float around = 2.0f * k_pi * 0.61803399f * float(index), level = std::sqrt(1.0f - height * height);
+    view.direction = vec3(-level * portable_cos(around), -height, -level * portable_sin(around));
+    view.right = perpendicular_to(view.direction);
+    view.up = glm::cross(view.right, view.direction);
     Random random(17, index);
     view.shift.x = random.next_unit();  // one after the other: arguments of a call have no order
     view.shift.y = random.next_unit();
-    view.chance = random.next_unit();
     return view;
 }
 
-class PartCoverage {
+// What a part is drawn with from each band of directions; as plant.h keeps it: a mean, and how it goes with height.
+struct Gain {
+    Bands of_band{1.0, 1.0, 1.0};
+
+    float mean() const { return float(mean_of(of_band)); }
+    // The two of which the means over the bands are of_band. The mean over all is right by itself.
+    HeightGain by_height() const {
+        auto second = [](size_t band) {  // integral of P_2
+            auto upto = [](double x) { return 0.5 * x * (x * x - 1.0); };
+            return (upto(double(k_band_begin[band + 1])) - upto(double(k_band_begin[band]))) / share_of(band);
+        };
+        auto fourth = [](size_t band) {
+            auto upto = [](double x) { return x * (0.875 * x * x * x * x - 1.25 * x * x + 0.375); };
+            return (upto(double(k_band_begin[band + 1])) - upto(double(k_band_begin[band]))) / share_of(band);
+        };
+        const double low = of_band[0] / mean_of(of_band) - 1.0, high = of_band[2] / mean_of(of_band) - 1.0;
+        const double a = second(0), b = fourth(0), c = second(2), d = fourth(2), determinant = a * d - b * c;
+        return {float((low * d - b * high) / determinant), float((a * high - low * c) / determinant)};
+    }
+};
+
+struct Part {
+    const PlantBlocks* blocks;
+    const PackedPart* packed;
+    bool lines;
+    float area_m2, length_m;  // in the mean over directions
+    float top_density;        // where the table of gains ends, in square pixels a square metre
+    std::vector<LinePoint> line_points;
+    Bands seen_m2{};  // of the triangles
+    Bands limit{};    // the gain where points do not meet
+};
+
+class PlantCoverage {
   public:
-    PartCoverage(const PackedPart& part, std::span<const PackedVertex> triangle_vertices,
-                 std::span<const PackedVertex> points, std::span<const PackedVertex> line_vertices)
-        : part_(part), triangle_vertices_(triangle_vertices), points_(points), line_vertices_(line_vertices) {
-        for (const PackedVertex& v : triangle_vertices)
-            bounds_.include(vec3(v.x_plant, v.y_plant, v.z_plant));
-        for (const PackedVertex& v : line_vertices) bounds_.include(vec3(v.x_plant, v.y_plant, v.z_plant));
+    explicit PlantCoverage(std::span<const PlantBlocks> plant) {
+        for (const PlantBlocks& blocks : plant) {
+            const PackedPart& packed = blocks.parts[0];
+            Part part{&blocks,
+                      &packed,
+                      packed.kind == PackedPartKind::lines,
+                      mean_projected_area_m2(packed),
+                      mean_projected_length_m(packed),
+                      0.0f,
+                      {},
+                      {},
+                      {}};
+            const float fill_m = part.lines ? part.length_m / part.area_m2 : 0.0f;
+            part.top_density = part.lines ? fill_m * fill_m : float(packed.point_count) / part.area_m2;
+            for (uint32_t i = 0; i < line_point_count(packed); ++i)
+                part.line_points.push_back(line_point(packed, blocks.line_vertices, i));
+            part.top_density = std::max(part.top_density, 1.0e-12f);  // of a part that has no points or lines
+            parts_.push_back(std::move(part));
+            bounds_.include(blocks.bounds_plant);
+        }
+        radius_m_ = 0.5f * glm::length(bounds_.size());
+        measure_seen();
+        for (Part& part : parts_) find_limit(part);
     }
 
-    // The gain at a mean pixel size, or 0 where it cannot be measured.
-    float measure(float pixels_per_meter, float area_px2) const {
-        float radius_px = 0.5f * glm::length(bounds_.size()) * pixels_per_meter;
-        uint32_t side = uint32_t(std::min(2.0f * radius_px + 6.0f, float(k_side_limit) + 1.0f));
-        if (area_px2 < k_least_area_px2 || side > k_side_limit) return 0.0f;
-        double by_cost = k_triangle_budget / double(part_.triangle_count + 1);
-        uint32_t views = uint32_t(std::clamp(std::min(k_wanted_pixels / double(area_px2), by_cost),
-                                             double(k_least_views), double(k_most_views)));
-        if (double(views) * double(area_px2) < k_least_pixels) return 0.0f;
-        CoverageRaster raster(side);
-        uint64_t wanted = 0;
-        for (uint32_t i = 0; i < views; ++i)
-            wanted += full(raster, view_of(i, views), pixels_per_meter, side);
-        if (wanted == 0) return 0.0f;
-        // Coverage grows by a power of the area drawn that falls where points lie on each other: secants in logarithms.
-        float gain = 1.0f, power = 1.0f, last_gain = 0.0f, last_drawn = 0.0f;
-        for (int round = 0; round < k_rounds; ++round) {
-            uint64_t pixels = 0;
-            for (uint32_t i = 0; i < views; ++i)
-                pixels += reduced(raster, view_of(i, views), pixels_per_meter, side, gain);
-            if (pixels == 0) return 0.0f;
-            const float drawn = portable_log2(float(pixels)), missing = portable_log2(float(wanted)) - drawn;
-            if (std::fabs(missing) < k_settled) break;
-            const float log_gain = portable_log2(gain);
-            if (round > 0 && log_gain != last_gain)
-                power = std::clamp((drawn - last_drawn) / (log_gain - last_gain), 0.25f, 1.0f);
-            last_gain = log_gain;
-            last_drawn = drawn;
-            gain = std::clamp(gain * portable_exp2(missing / power), 0.25f, 4.0f);
+    // Finest first; densities fall by half from one to the next, and the last one is where points no longer meet.
+    void measure() {
+        double seen_m2 = 0.0;
+        float top_density = 0.0f;
+        for (const Part& part : parts_) {
+            seen_m2 += mean_of(part.seen_m2);
+            top_density = std::max(top_density, part.top_density);
         }
-        return gain;
+        const float most_per_meter = 0.5f * (k_largest_side - 6.0f) / std::max(radius_m_, 1.0e-6f);
+        top_density_ = std::min(top_density, most_per_meter * most_per_meter);
+        size_t count = 1;
+        for (double seen_px2 = seen_m2 * double(top_density_); seen_px2 >= k_least_seen_px2; seen_px2 *= 0.5)
+            ++count;
+        levels_.assign(count, std::vector<Gain>(parts_.size()));
+        for (size_t p = 0; p < parts_.size(); ++p) levels_.back()[p].of_band = parts_[p].limit;
+        for (size_t level = count - 1; level-- > 0;) {
+            levels_[level] = levels_[level + 1];
+            measure_level(top_density_ * portable_exp2(-float(level)), levels_[level]);
+        }
+    }
+
+    void tell(size_t index, PackedPart& packed) const {
+        const Part& part = parts_[index];
+        for (uint32_t level = 0; level < k_gain_levels; ++level) {
+            const float octave = float(k_gain_levels - 1 - level) * (part.lines ? 2.0f : 1.0f);
+            const float at = std::clamp(portable_log2(top_density_ / part.top_density) + octave, 0.0f,
+                                        float(levels_.size() - 1));
+            const size_t before = std::min(size_t(at), levels_.size() - 1),
+                         behind = std::min(before + 1, levels_.size() - 1);
+            const float share = at - float(before);
+            const Gain &a = levels_[before][index], &b = levels_[behind][index];
+            const float gain = a.mean() + (b.mean() - a.mean()) * share;
+            packed.coverage_gain[level] = std::clamp(gain, k_least_gain, k_largest_gain);
+            if (level % 2 == 0) continue;
+            const HeightGain low = a.by_height(), high = b.by_height();
+            packed.height_gain[level / 2] =
+                round_height_gain({low.second + (high.second - low.second) * share,
+                                   low.fourth + (high.fourth - low.fourth) * share});
+        }
     }
 
   private:
-    vec2 place(const View& view, const PackedVertex& v, float pixels_per_meter, uint32_t side) const {
-        vec3 p = (vec3(v.x_plant, v.y_plant, v.z_plant) - bounds_.center()) * pixels_per_meter;
-        return vec2(glm::dot(view.right, p), glm::dot(view.up, p)) + view.shift + 0.5f * float(side);
+    vec3 place(const View& view, const PackedVertex& v, float pixels_per_meter, float side) const {
+        const vec3 p = vec3(v.x_plant, v.y_plant, v.z_plant) - bounds_.center();
+        return {glm::dot(view.right, p) * pixels_per_meter + view.shift.x + 0.5f * side,
+                glm::dot(view.up, p) * pixels_per_meter + view.shift.y + 0.5f * side,
+                glm::dot(view.direction, p)};
     }
-    uint64_t full(CoverageRaster& raster, const View& view, float pixels_per_meter, uint32_t side) const {
-        raster.begin();
-        for (size_t i = 0; i + 2 < triangle_vertices_.size(); i += 3)
-            raster.triangle(place(view, triangle_vertices_[i], pixels_per_meter, side),
-                            place(view, triangle_vertices_[i + 1], pixels_per_meter, side),
-                            place(view, triangle_vertices_[i + 2], pixels_per_meter, side));
-        return raster.covered();
+    void draw_triangles(CoverageRaster& raster, const Part& part, const View& view, float pixels_per_meter,
+                        float side) const {
+        const std::vector<PackedVertex>& vertices = part.blocks->triangle_vertices;
+        for (size_t i = 0; i + 2 < vertices.size(); i += 3)
+            raster.triangle(place(view, vertices[i], pixels_per_meter, side),
+                            place(view, vertices[i + 1], pixels_per_meter, side),
+                            place(view, vertices[i + 2], pixels_per_meter, side));
     }
-    // What lod/choose_part.cpp would draw at a sample distance of one pixel, were there no triangles.
-    uint64_t reduced(CoverageRaster& raster, const View& view, float pixels_per_meter, uint32_t side,
-                     float gain) const {
-        vec3 direction = glm::cross(view.up, view.right);
-        const float square = pixels_per_meter * pixels_per_meter;
-        raster.begin();
-        if (!points_.empty()) {
-            // lod/choose_part.cpp: the mean over all directions asks for points; |n . v|, a half in the mean, sizes them.
-            const float area = gain * mean_projected_area_m2(part_) * square;
-            float stored = float(points_.size()), p = std::min(part_.importance * area, stored);
-            float splat_area = 2.0f * area / std::max(p, 1.0e-6f);
-            size_t count = std::min(points_.size(), size_t(p + view.chance));
-            for (size_t i = 0; i < count; ++i)
-                raster.square(place(view, points_[i], pixels_per_meter, side),
-                              std::sqrt(splat_area * facing_of(points_[i], direction)));
-        } else {
-            const float area = gain * part_.projected_area_m2.evaluate(direction) * square;
-            float length = part_.projected_length_m.evaluate(direction) * pixels_per_meter;
-            float q = std::min(part_.importance * area / std::max(length, 1.0e-6f), 1.0f),
-                  stored = float(line_vertices_.size() / 2);
-            size_t count = std::min(line_vertices_.size() / 2, size_t(q * stored + view.chance));
-            float width = area / std::max(length * q, 1.0e-6f);
-            for (size_t i = 0; i < count; ++i)
-                raster.line(place(view, line_vertices_[2 * i], pixels_per_meter, side),
-                            place(view, line_vertices_[2 * i + 1], pixels_per_meter, side),
-                            width * std::bit_cast<float>(line_vertices_[2 * i + 1].surface));
-        }
-        return raster.covered();
+
+    // Pixels that show each part, over all views of each band.
+    template <class Draw>
+    std::vector<Bands> count_seen(uint32_t side, uint32_t views, Draw&& draw) const {
+        const size_t jobs = std::min<size_t>(k_jobs, views);
+        std::vector<std::vector<Bands>> of_job(jobs);
+        parallel_for(jobs, 1, [&](size_t first, size_t last) {
+            for (size_t job = first; job < last; ++job) {
+                of_job[job].resize(parts_.size());
+                CoverageRaster raster(side, uint32_t(parts_.size()));
+                for (size_t i = views * job / jobs; i < views * (job + 1) / jobs; ++i) {
+                    const View view = view_of(uint32_t(i), views);
+                    raster.begin();
+                    draw(raster, view, uint32_t(i));
+                    for (size_t p = 0; p < parts_.size(); ++p)
+                        of_job[job][p][view.band] += double(raster.seen()[p]);
+                }
+            }
+        });
+        std::vector<Bands> sum(parts_.size());
+        for (const std::vector<Bands>& seen : of_job)
+            for (size_t p = 0; p < parts_.size(); ++p)
+                for (size_t band = 0; band < k_bands; ++band) sum[p][band] += seen[p][band];
+        return sum;
+    }
+
+    // In the mean over places of the pixel grid a picture of any resolution shows the same share.
+    void measure_seen() {
+        const float side = float(k_truth_side),
+                    pixels_per_meter = 0.5f * (side - 4.0f) / std::max(radius_m_, 1.0e-6f);
+        const std::vector<Bands> seen =
+            count_seen(k_truth_side, k_truth_views, [&](CoverageRaster& raster, const View& view, uint32_t) {
+                for (size_t p = 0; p < parts_.size(); ++p) {
+                    raster.set_part(uint32_t(p));
+                    draw_triangles(raster, parts_[p], view, pixels_per_meter, side);
+                }
+            });
+        const double to_m2 =
+            double(k_bands) / k_truth_views / (double(pixels_per_meter) * double(pixels_per_meter));
+        for (size_t p = 0; p < parts_.size(); ++p)
+            for (size_t band = 0; band < k_bands; ++band) parts_[p].seen_m2[band] = seen[p][band] * to_m2;
     }
 
     static float facing_of(const PackedVertex& vertex, vec3 direction) {
         return std::fabs(glm::dot(decode_surface(vertex.surface).normal, direction));
     }
 
-    const PackedPart& part_;
-    std::span<const PackedVertex> triangle_vertices_, points_, line_vertices_;
-    Box bounds_;
-};
-
-float mean_over_views(const DirectionForm& form) {
-    float sum = 0.0f;
-    for (uint32_t i = 0; i < 64; ++i) {
-        View view = view_of(i, 64);
-        sum += form.evaluate(glm::cross(view.up, view.right));
+    void find_limit(Part& part) const {
+        Bands drawn_m2{};
+        for (uint32_t i = 0; i < k_truth_views; ++i) {
+            const View view = view_of(i, k_truth_views);
+            double facing = 0.0, count = 0.0;
+            auto add = [&](const PackedVertex& vertex, float share) {
+                facing += 2.0 * double(facing_of(vertex, view.direction) * share);
+                count += 1.0;
+            };
+            for (const LinePoint& point : part.line_points) add(point.vertex, point.width_share);
+            const uint32_t points = part.packed->point_count;
+            for (uint32_t k = 0; k < points && k <= point_turn_mask(points); ++k)
+                add(part.blocks->points[k], 1.0f);
+            if (count > 0.0)
+                drawn_m2[view.band] +=
+                    double(part.area_m2) * facing / count * (double(k_bands) / k_truth_views);
+        }
+        for (size_t band = 0; band < k_bands; ++band)
+            part.limit[band] = drawn_m2[band] > 0.0 ? std::clamp(part.seen_m2[band] / drawn_m2[band],
+                                                                 double(k_least_gain), double(k_largest_gain))
+                                                    : 1.0;
     }
-    return sum / 64.0f;
-}
+
+    // What lod/choose_part.cpp would draw at a sample distance of one pixel, were there no triangles but of parts that
+    // are nearer than their gains tell.
+    void draw_part(CoverageRaster& raster, const Part& part, const Gain& of_part, const View& view,
+                   uint32_t draw, float density, float side) const {
+        const float per_meter = std::sqrt(density), importance = part.packed->importance;
+        if (density > 1.001f * part.top_density) return draw_triangles(raster, part, view, per_meter, side);
+        const float height = view.direction.y, gain = of_part.mean();
+        const float size_gain = seen_gain(of_part.by_height(), height);
+        const float chance = random_of(draw, part, 0);
+        const float area_px2 = gain * part.area_m2 * density;
+        if (!part.lines) {
+            // The mean over all directions asks for points; |n . v|, a half in the mean, sizes them.
+            const uint32_t stored = part.packed->point_count;
+            const float p = std::min(importance * area_px2, float(stored));
+            const float splat_px2 = 2.0f * area_px2 / std::max(p, 1.0e-6f) * size_gain;
+            const uint32_t count = std::min(stored, uint32_t(p + chance));
+            const uint32_t begin = run_begin(mix_bits(draw) & point_turn_mask(stored), count);
+            for (uint32_t i = begin; i < begin + count; ++i) {
+                const PackedVertex& point = part.blocks->points[i];
+                raster.square(place(view, point, per_meter, side),
+                              std::sqrt(splat_px2 * facing_of(point, view.direction)));
+            }
+            return;
+        }
+        const uint32_t stored = part.packed->line_count, stored_points = uint32_t(part.line_points.size());
+        const float points = importance * area_px2;
+        const float points_from_px =
+            std::min(part.packed->line_length_m / float(stored) * per_meter, std::sqrt(points / 8.0f));
+        if (0.75f + 0.5f * random_of(draw, part, 1) >= points_from_px) {
+            const uint32_t count = std::min(stored_points, uint32_t(points + chance));
+            const uint32_t begin = run_begin(mix_bits(draw) & point_turn_mask(stored_points), count);
+            for (uint32_t i = begin; i < begin + count; ++i) {
+                const LinePoint& point = part.line_points[i];
+                raster.square(place(view, point.vertex, per_meter, side),
+                              std::sqrt(2.0f * size_gain / importance * point.width_share *
+                                        facing_of(point.vertex, view.direction)));
+            }
+            return;
+        }
+        const float area = gain * part.packed->projected_area_m2.evaluate(view.direction) * density;
+        const float length = part.packed->projected_length_m.evaluate(view.direction) * per_meter;
+        const float q = std::min(importance * area / std::max(length, 1.0e-6f), 1.0f);
+        const uint32_t count = std::min(stored, uint32_t(q * float(stored) + chance));
+        const float width = size_gain * area / std::max(length * q, 1.0e-6f);
+        const std::vector<PackedVertex>& ends = part.blocks->line_vertices;
+        for (size_t i = 0; i < 2 * size_t(count); i += 2)
+            raster.line(place(view, ends[i], per_meter, side), place(view, ends[i + 1], per_meter, side),
+                        width * std::bit_cast<float>(ends[i + 1].surface));
+    }
+    // In [0, 1), of any run of draws well spread.
+    float random_of(uint32_t draw, const Part& part, uint32_t number) const {
+        const uint32_t begin = mix_bits(uint32_t(&part - parts_.data()) * 2 + number);
+        return float((begin + draw * (number == 0 ? 2654435769u : 3242174889u)) >> 8) * 0x1p-24f;
+    }
+
+    void measure_level(float density, std::vector<Gain>& gains) const {
+        double seen_px2 = 0.0, primitives = 1.0;
+        for (const Part& part : parts_) {
+            seen_px2 += mean_of(part.seen_m2) * double(density);
+            primitives += density > part.top_density
+                              ? double(part.packed->triangle_count)
+                              : std::min(double(part.area_m2 * density * part.packed->importance),
+                                         double(part.packed->point_count + part.packed->line_count));
+        }
+        const double affordable = k_primitive_budget / primitives;
+        const uint32_t views = uint32_t(std::clamp(std::min(k_wanted_pixels / seen_px2, affordable),
+                                                   k_least_views, k_most_views)) /
+                               k_bands * k_bands;
+        const float side = std::ceil(2.0f * radius_m_ * std::sqrt(density)) + 6.0f;
+        std::vector<Bands> last_gain(parts_.size()), last_drawn(parts_.size());
+        for (int round = 0; round < k_rounds; ++round) {
+            const std::vector<Bands> drawn = count_seen(
+                uint32_t(side), views, [&](CoverageRaster& raster, const View& view, uint32_t draw) {
+                    for (size_t p = 0; p < parts_.size(); ++p) {
+                        raster.set_part(uint32_t(p));
+                        draw_part(raster, parts_[p], gains[p], view, draw, density, side);
+                    }
+                });
+            for (size_t p = 0; p < parts_.size(); ++p) {
+                if (density > 1.001f * parts_[p].top_density) continue;
+                for (size_t band = 0; band < k_bands; ++band) {
+                    const double wanted = parts_[p].seen_m2[band] * double(density) * views / double(k_bands);
+                    if (wanted < k_least_pixels || drawn[p][band] < 1.0) continue;
+                    // Coverage grows by a power of the area drawn that falls where points lie on each other: secants
+                    // in logarithms.
+                    double& gain = gains[p].of_band[band];
+                    const double log_gain = double(portable_log2(float(gain)));
+                    const double log_drawn = double(portable_log2(float(drawn[p][band])));
+                    double power = 1.0;
+                    if (round > 0 && log_gain != last_gain[p][band])
+                        power = std::clamp(
+                            (log_drawn - last_drawn[p][band]) / (log_gain - last_gain[p][band]), 0.4, 1.0);
+                    last_gain[p][band] = log_gain;
+                    last_drawn[p][band] = log_drawn;
+                    const double missing = double(portable_log2(float(wanted))) - log_drawn;
+                    gain = std::clamp(gain * double(portable_exp2(float(missing / power))),
+                                      double(k_least_gain), double(k_largest_gain));
+                }
+            }
+        }
+    }
+
+    std::vector<Part> parts_;
+    Box bounds_;
+    float radius_m_ = 0.0f, top_density_ = 1.0f;
+    std::vector<std::vector<Gain>> levels_;
+};
 
 }  // namespace
 
-std::array<float, k_gain_levels> measure_coverage_gain(const PackedPart& part,
-                                                       std::span<const PackedVertex> triangle_vertices,
-                                                       std::span<const PackedVertex> points,
-                                                       std::span<const PackedVertex> line_vertices) {
-    std::array<float, k_gain_levels> gains;
-    gains.fill(1.0f);
-    // By which gain_at is asked.
-    float area_m2 = points.empty() ? mean_over_views(part.projected_area_m2) : mean_projected_area_m2(part),
-          length_m = mean_over_views(part.projected_length_m);
-    if (!(area_m2 > 0.0f) || (points.empty() && !(line_vertices.size() > 1 && length_m > 0.0f))) return gains;
-    PartCoverage coverage(part, triangle_vertices, points, line_vertices);
-    std::array<float, k_gain_levels> measured{};
-    parallel_for(k_gain_levels, 1, [&](size_t first, size_t last) {
-        for (size_t level = first; level < last; ++level) {
-            float fill = portable_exp2(float(level) - float(k_gain_levels - 1));
-            // fill = area_px2 / n_p for points, area_px2 / length_px for lines (gain_at)
-            float pixels_per_meter =
-                points.empty() ? fill * length_m / area_m2 : std::sqrt(fill * float(points.size()) / area_m2);
-            measured[level] =
-                coverage.measure(pixels_per_meter, area_m2 * pixels_per_meter * pixels_per_meter);
-        }
-    });
-    // What could not be measured takes its neighbour's: small sizes from the next larger, large from the next
-    // smaller.
-    for (size_t level = k_gain_levels; level-- > 0;)
-        gains[level] = measured[level] > 0.0f      ? measured[level]
-                       : level + 1 < k_gain_levels ? gains[level + 1]
-                                                   : 0.0f;
-    for (size_t level = 0; level < k_gain_levels; ++level)
-        if (!(gains[level] > 0.0f)) gains[level] = level > 0 ? gains[level - 1] : 1.0f;
-    return gains;
+void measure_coverage(std::span<PlantBlocks> parts) {
+    PlantCoverage coverage(parts);
+    coverage.measure();
+    for (size_t i = 0; i < parts.size(); ++i) coverage.tell(i, parts[i].parts[0]);
 }
 
 }  // namespace coppice

@@ -34,6 +34,20 @@ inline float off_axis_stretch(const Frustum& frustum, vec3 center, float distanc
     return off_axis_stretch(frustum.corner_cos, glm::dot(frustum.forward, center), distance_m);
 }
 
+// Of all that the box holds at most, at nearest_m and beyond: off the axis more is asked for than at the box's centre.
+inline float most_pixels_per_meter(const Frustum& frustum, const Box& box, float nearest_m) {
+    const vec3 center = box.center();
+    float most = off_axis_stretch(frustum, center, glm::length(center)) / std::max(nearest_m, frustum.near_m);
+    for (uint32_t i = 0; i < 8; ++i) {
+        const vec3 corner(i & 1 ? box.max.x : box.min.x, i & 2 ? box.max.y : box.min.y,
+                          i & 4 ? box.max.z : box.min.z);
+        const float distance_m = glm::length(corner);
+        most = std::max(most,
+                        off_axis_stretch(frustum, corner, distance_m) / std::max(distance_m, frustum.near_m));
+    }
+    return frustum.focal_px * most;
+}
+
 enum class Visibility { outside, across, inside };
 Visibility see_box(const Frustum& frustum, const Box& box);
 

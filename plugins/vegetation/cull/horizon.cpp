@@ -241,7 +241,9 @@ bool Horizon::hidden(const Box& bounds_camera, float spread_px) const {
     if (ring_count_ == 0 || bounds_camera.empty()) return false;
     const vec3 far = glm::max(glm::abs(bounds_camera.min), glm::abs(bounds_camera.max));
     // Diagonally, and a pixel more: what rounding moves on the picture.
-    const float beside_m = 1.4143f * (spread_px + 1.0f) / focal_px_ * glm::length(far);
+    const float a_pixel_m = 1.4143f / focal_px_ * glm::length(far), beside_m = a_pixel_m * (spread_px + 1.0f);
+    // draw/splat_points.comp: twice as far as it reaches a square comes nearer along the ray, which keeps its slope.
+    const float nearer_m = 2.0f * a_pixel_m * spread_px;
     const Box box{bounds_camera.min - beside_m, bounds_camera.max + beside_m};
     if (!is_finite(box.min) || !is_finite(box.max)) return false;
 
@@ -250,7 +252,7 @@ bool Horizon::hidden(const Box& bounds_camera, float spread_px) const {
         Span span;
         if (!span_of(box, face, span)) continue;
         in_view = true;
-        const float* horizon = slopes_at(face, span.u_begin);
+        const float* horizon = slopes_at(face, span.u_begin - nearer_m);
         if (!horizon) return false;
         const float top = box.max.y, slope = top / (top > 0.0f ? span.u_begin : span.u_end);
         for (uint32_t column = span.first; column <= span.last; ++column)

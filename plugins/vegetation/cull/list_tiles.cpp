@@ -44,17 +44,15 @@ TileList::SeenTile TileList::see(const Pending& at, const Frustum& frustum, cons
     seen.bounds_camera = {tile.bounds_tile.min + seen.origin_camera,
                           tile.bounds_tile.max + seen.origin_camera};
     seen.nearest_m = distance_m(seen.bounds_camera, vec3(0.0f));
-    const vec3 center = seen.bounds_camera.center();
     // What is nearest asks for most.
-    const float focal_px = frustum.focal_px * off_axis_stretch(frustum, center, glm::length(center));
-    const float most_px = focal_px / std::max(seen.nearest_m, frustum.near_m);
+    const float most_px = most_pixels_per_meter(frustum, seen.bounds_camera, seen.nearest_m);
     auto density_at = [&](float per_meter_px) {
         const float per_meter = per_meter_px / settings.sample_distance_px;
         return settings.sample_distance_px > 0.0f ? per_meter * per_meter : INFINITY;
     };
     const float soon_m = std::min(seen.nearest_m, distance_m(seen.bounds_camera, settings.motion_m));
     seen.density = density_at(most_px);
-    seen.density_soon = density_at(focal_px / std::max(soon_m, frustum.near_m));
+    seen.density_soon = density_at(most_pixels_per_meter(frustum, seen.bounds_camera, soon_m));
 
     const bool suffices = seen.density <= levels.finest_density;
     const float sample_distance_px = most_px / std::sqrt(std::max(levels.finest_density, 1e-12f));

@@ -24,6 +24,13 @@ void chances_of(std::span<const uint32_t> seeds, uint32_t part_of_model, float t
     for (size_t i = 0; i < count; ++i) out[i] = chance_of(seeds[i], part_of_model, turn);
 }
 
+COPPICE_VECTOR_CLONES
+void first_points_of(std::span<const uint32_t> seeds, uint32_t part_of_model, uint32_t mask,
+                     PlantColumn<uint32_t>& out) {
+    const size_t count = std::min(seeds.size(), out.size());
+    for (size_t i = 0; i < count; ++i) out[i] = first_point_of(seeds[i], part_of_model, mask);
+}
+
 }  // namespace
 
 void draw_plants(const SeenPlants& seen, const SceneGeometry& geometry, const FrameSettings& settings,
@@ -31,21 +38,26 @@ void draw_plants(const SeenPlants& seen, const SceneGeometry& geometry, const Fr
     const float turn = turn_of(rest_index);
     work.share_instances(std::span(seen.instances).first(seen.plant_count));
     PlantColumn<float> chances;
+    PlantColumn<uint32_t> first_points;
     PartChoices choices;
     each_part(
         seen, geometry, settings,
         [&](const SeenPart& many) {
             const size_t count = many.left_out.size();
-            chances_of(std::span(seen.seed).subspan(many.first_plant, count), many.part_of_model, turn,
-                       chances);
+            const std::span<const uint32_t> seeds = std::span(seen.seed).subspan(many.first_plant, count);
+            const PartGeometry& place = geometry.part_geometry[many.part];
+            chances_of(seeds, many.part_of_model, turn, chances);
+            first_points_of(seeds, many.part_of_model, place.point_turn_mask, first_points);
             choose_parts(many.rule, many.demands, std::span(chances).first(count), choices);
-            work.add(geometry.part_geometry[many.part], many.rule, choices, many.left_out, many.first_plant,
+            work.add(place, many.rule, many.demands, choices, first_points, many.left_out, many.first_plant,
                      turn);
         },
         [&](uint32_t plant, uint32_t part, uint32_t part_of_model, const PartRule& rule,
             const PartDemand& demand) {
             const float chance = chance_of(seen.seed[plant], part_of_model, turn);
-            work.add(geometry.part_geometry[part], rule.expand(rule.choose(demand, chance)), plant, turn);
+            const PartGeometry& place = geometry.part_geometry[part];
+            work.add(place, rule.expand(rule.choose(demand, chance), demand.side_gain), plant, turn,
+                     first_point_of(seen.seed[plant], part_of_model, place.point_turn_mask));
         });
 }
 
@@ -61,7 +73,7 @@ CloudView view_of(const CloudTile& tile, const Frustum& frustum) {
     const float distance_m = glm::length(center);
     const float focal_px = frustum.focal_px * off_axis_stretch(frustum, center, distance_m);
     return {focal_px / std::max(distance_m, frustum.near_m),
-            focal_px / std::max(tile.nearest_m, frustum.near_m)};
+            most_pixels_per_meter(frustum, tile.bounds_camera, tile.nearest_m)};
 }
 
 // Of the points that are drawn at most, where the cloud stands in for what is not in memory.
@@ -97,9 +109,11 @@ void expand_clouds(std::span<const CloudTile> tiles, const SceneGeometry& geomet
                      seen.nearest_pixels_per_meter *
                          std::sqrt(settings.splat_factor / std::max(tile.finest_density, 1e-12f)));
         // A tile around the image plane has no depth to go by: all of it is drawn as its nearest place asks for.
-        const float depth_m = std::max(glm::dot(frustum.forward, tile.bounds_camera.center()), 0.0f);
-        const PartChoice choice = choose_cloud(cloud.densities, seen.pixels_per_meter, depth_m,
-                                               seen.nearest_pixels_per_meter, tile_settings);
+        const vec3 center = tile.bounds_camera.center();
+        const float depth_m = std::max(glm::dot(frustum.forward, center), 0.0f);
+        const PartChoice choice =
+            choose_cloud(cloud.part, cloud.densities, seen.pixels_per_meter, glm::length(center), depth_m,
+                         seen.nearest_pixels_per_meter, tile_settings);
         if (choice.points == 0) continue;
         // From the beginning also at rest: what is asked for is the prefix up to a density.
         work.add(cloud.geometry, choice, work.add_instance(instance_at(tile.origin_camera)));

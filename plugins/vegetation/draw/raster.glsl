@@ -108,6 +108,23 @@ vec3 view_direction(Transform t, vec3 position_plant) {
     return p * inversesqrt(max(dot(p, p), 1.0e-30));
 }
 
+float distance_to(Transform t, vec3 position_plant) {
+    return length(t.place + turn_direction(t, position_plant));
+}
+
+// plant/plant.h, of two numbers as draw/work_list.cpp packs them.
+float seen_gain(uint height_gain, float height) {
+    vec2 gain = unpackSnorm2x16(height_gain) * 4.0;
+    float square = height * height;
+    return clamp(1.0 + gain.x * (1.5 * square - 0.5) + gain.y * ((4.375 * square - 3.75) * square + 0.375), 0.1, 1.6);
+}
+
+// Of what lies level: by how much 1 / w grows a column and a row, times its height over the viewer.
+vec2 level_slope() {
+    vec3 across = cross(frame.row_y.xyz, frame.row_w.xyz), along = cross(frame.row_w.xyz, frame.row_x.xyz);
+    return vec2(across.y, along.y) / dot(frame.row_x.xyz, across);
+}
+
 vec3 unit_normal(Transform t, uint surface) {
     vec3 n = turn_direction(t, decode_normal(surface));
     return n * inversesqrt(max(dot(n, n), 1.0e-30));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include "plugins/vegetation/plant/line_points.h"
+#include "plugins/vegetation/plant/point_run.h"
 
 namespace coppice {
 namespace {
@@ -24,6 +25,7 @@ void add_line_points(const Plant& plant, const PackedPart& part, SceneGeometry& 
 
 void set_cloud(SceneGeometry& geometry, uint32_t index, const TileCloud& cloud) {
     DrawCloud& drawn = geometry.clouds[index];
+    drawn.part = cloud.part;
     drawn.densities.assign(cloud.densities.begin(), cloud.densities.end());
     drawn.geometry.point_count = uint32_t(cloud.points.size());
 }
@@ -92,7 +94,7 @@ Result<SceneGeometry> gather_geometry(const GeometrySource& source) {
             geometry.part_geometry.push_back(
                 {first_triangle_vertex + part.first_triangle * 3, first_point + part.first_point,
                  first_line_vertex + part.first_line * 2, first_owner + part.first_point,
-                 (part.flags & k_part_faces_outwards) != 0, part.point_count, part.line_count});
+                 (part.flags & k_part_faces_outwards) != 0, part.point_count, part.line_count, 0});
             if (part.kind == PackedPartKind::lines) add_line_points(plant, part, geometry);
             const vec3 low(part.bounds_min[0], part.bounds_min[1], part.bounds_min[2]);
             const vec3 high(part.bounds_max[0], part.bounds_max[1], part.bounds_max[2]);
@@ -102,6 +104,8 @@ Result<SceneGeometry> gather_geometry(const GeometrySource& source) {
         };
         for (const PackedPart& part : plant.parts) {
             add_part(part);
+            PartGeometry& place = geometry.part_geometry.back();
+            place.point_turn_mask = point_turn_mask(place.point_count);
             model.triangle_count += part.triangle_count;
         }
         for (const PackedPart& cell : plant.cells) {
@@ -117,7 +121,7 @@ Result<SceneGeometry> gather_geometry(const GeometrySource& source) {
         place.first_point = append(cloud->points);
         place.first_owner = uint32_t(geometry.owners.size());
         for (float density : cloud->densities) geometry.owners.push_back(std::bit_cast<uint32_t>(density));
-        geometry.clouds.push_back({{}, place});
+        geometry.clouds.push_back({{}, {}, place});
         set_cloud(geometry, uint32_t(geometry.clouds.size() - 1), *cloud);
     }
     for (const Ground& ground : source.grounds) {
@@ -137,7 +141,7 @@ Result<SceneGeometry> gather_geometry(const GeometrySource& source) {
         PartGeometry place{};
         place.first_point = uint32_t(geometry.vertices.size()) + i * k_cloud_points;
         place.first_owner = uint32_t(geometry.owners.size()) + i * k_cloud_points;
-        geometry.clouds.push_back({{}, place});
+        geometry.clouds.push_back({{}, {}, place});
     }
     return geometry;
 }

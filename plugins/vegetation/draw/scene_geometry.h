@@ -32,6 +32,7 @@ struct PartSphere {
 
 // A tile's cloud: points in tile space.
 struct DrawCloud {
+    PackedPart part;
     std::vector<float> densities;  // of its points, ascending
     PartGeometry geometry;
 };

@@ -12,42 +12,55 @@ layout(constant_id = 2) const uint k_side_limit = 1u;  // pixels a square can to
 layout(constant_id = 3) const bool k_blend = false;
 layout(binding = 4) uniform utextureBuffer owners;
 
+// A square that faced the viewer would be half in the ground below. It lies level, up to k_steepest, and bends towards the
+// viewer by k_bend, for ground that is not level: m a metre. cull/horizon.cpp knows how near that may come.
+const float k_steepest = 1.5, k_bend = 0.5;
+
 void main() {
     uint index, first_item, step;
     if (!take_entry(index, first_item, step)) return;
     Entry entry = load_entry(index);
     Transform t = load_transform(entry.instance, entry.ground);
     ivec2 size = ivec2(frame.row_x.w, frame.row_y.w);
+    vec2 level = level_slope();
+    float a_pixel = 1.0 / length(frame.row_x.xyz - dot(frame.row_x.xyz, frame.row_w.xyz) * frame.row_w.xyz);
     bool carries_density = k_blend && entry.density_limit > 0.0;
 
     for (uint i = first_item; i < entry.count; i += step) {
         uint owner = k_blend ? texelFetch(owners, int(entry.first_owner + i)).x : 0u;
-        if (k_blend && owner < entry.owner_min) continue;
+        if (k_blend && !carries_density && owner < entry.owner_min) continue;
         uvec4 vertex = texelFetch(vertices, int(entry.first_vertex + i));
         vec3 position = uintBitsToFloat(vertex.xyz);
         vec3 p = project(t, position);
-        float facing = abs(dot(unit_normal(t, vertex.w), view_direction(t, position)));
+        vec3 view = view_direction(t, position);
+        float facing = abs(dot(unit_normal(t, vertex.w), view));
         // size_px is of a point that faces the viewer.
         float side_px = entry.mean_facing > 0.0 ? entry.size_px * sqrt(facing) : entry.size_px;
-        if (carries_density) side_px *= exp2((float(owner & 0xffu) - 128.0) / 32.0);
+        if (carries_density) side_px *= sqrt(seen_gain(entry.owner_min, view.y)) * exp2((float(owner & 0xffu) - 128.0) / 32.0);
         int side = k_side_limit > 0u ? int(k_side_limit) : min(int(ceil(side_px)), 64);
         // First pixel whose centre lies inside, and how many more there are along each axis.
         vec2 low = p.xy - 0.5 * side_px - 0.5;
         vec2 first = ceil(low);
         ivec2 count = ivec2(ceil(low + side_px) - first);
-        if (carries_density && uintBitsToFloat(owner) * p.z * p.z > entry.density_limit) continue;
+        // What a plant there would ask for (cull/frustum.h, off_axis_stretch).
+        if (carries_density && uintBitsToFloat(owner) * p.z * p.z * p.z > entry.density_limit * distance_to(t, position))
+            continue;
         bool in_view = p.z >= frame.row_w.w && all(greaterThan(p.xy, vec2(-64.0))) &&
                        all(lessThan(p.xy, vec2(size) + 64.0));
         if (!in_view) continue;
         ivec2 corner = ivec2(first);
         uint surface = turn_surface(t, vertex.w, k_kind_point);
         float depth = frame.row_w.w / p.z;
+        float height = dot(t.turn_y, position) + t.place.y;
+        vec2 slope = level * (frame.row_w.w / height);
+        slope *= min(1.0, k_steepest * a_pixel * depth / max(length(slope), 1.0e-30));
         for (int y = 0; y < side; ++y)
             for (int x = 0; x < side; ++x) {
                 ivec2 pixel = corner + ivec2(x, y);
+                vec2 beside = vec2(pixel) + 0.5 - p.xy;
                 if (x < count.x && y < count.y && all(greaterThanEqual(pixel, ivec2(0))) &&
                     all(lessThan(pixel, size)))
-                    write_pixel(pixel, depth, surface);
+                    write_pixel(pixel, clamp(depth * (1.0 + k_bend * a_pixel * length(beside)) + dot(slope, beside), 0.5 * depth, 1.0), surface);
             }
     }
 }

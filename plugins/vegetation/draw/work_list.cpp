@@ -3,12 +3,30 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include "plugins/vegetation/plant/point_run.h"
 #include "runtime/core/jobs.h"
 
 namespace coppice {
 namespace {
 
 constexpr size_t k_parts_a_job = 16;
+
+// Four times a normalised number of 16 bits each; splat_points.comp reads it.
+uint32_t pack_height_gain(HeightGain gain) {
+    auto pack = [](float value) {
+        return uint32_t(uint16_t(int16_t(std::clamp(value * 0.25f, -1.0f, 1.0f) * 32767.0f)));
+    };
+    return pack(gain.second) | pack(gain.fourth) << 16;
+}
+
+// Of one size and all there are.
+WorkKind kind_of_points(float side_px) {
+    constexpr float k_slack =
+        1.0e-3f;  // a rounding error over a whole pixel must not cost four times the pixels
+    return side_px <= 1.0f + k_slack   ? WorkKind::points_1
+           : side_px <= 2.0f + k_slack ? WorkKind::points_2
+                                       : WorkKind::points_any;
+}
 
 size_t lane_bucket(uint32_t count) { return count <= 4 ? 0 : count <= 8 ? 1 : count <= 16 ? 2 : 3; }
 
@@ -59,11 +77,10 @@ void WorkPart::add_ground(uint32_t first_vertex, uint32_t triangle_count, uint32
     add_triangles(first_vertex, triangle_count, instance | k_ground_bit, false);
 }
 
-void WorkPart::add_from(WorkKind kind, WorkEntry entry, uint32_t vertices_a_primitive, float start,
+void WorkPart::add_from(WorkKind kind, WorkEntry entry, uint32_t vertices_a_primitive, uint32_t first,
                         uint32_t stored, uint32_t count, bool has_owners) {
-    const uint32_t first = std::min(uint32_t(start * float(stored)), stored);
     const uint32_t from_start = std::min(count, stored - first);
-    // What is left for the list's beginning, and the run from `start` on.
+    // What is left for the list's beginning, and the run from `first` on.
     entry.count = count - from_start;
     add_run(kind, entry, vertices_a_primitive);
     entry.first_vertex += vertices_a_primitive * first;
@@ -72,7 +89,9 @@ void WorkPart::add_from(WorkKind kind, WorkEntry entry, uint32_t vertices_a_prim
     add_run(kind, entry, vertices_a_primitive);
 }
 
-void WorkPart::add(const PartGeometry& geometry, const PartChoice& choice, uint32_t instance, float start) {
+void WorkPart::add(const PartGeometry& geometry, const PartChoice& choice, uint32_t instance, float start,
+                   uint32_t first_point) {
+    auto place_of = [start](uint32_t stored) { return std::min(uint32_t(start * float(stored)), stored); };
     triangles += choice.triangles;
     lines += choice.lines;
     points += choice.points - choice.skipped_points;
@@ -82,41 +101,37 @@ void WorkPart::add(const PartGeometry& geometry, const PartChoice& choice, uint3
         add_from(WorkKind::lines,
                  {geometry.first_line_vertex, 0, instance, 0, choice.line_width_px,
                   std::bit_cast<uint32_t>(choice.turned_share), 0, 0.0f},
-                 2, start, geometry.line_count, choice.lines, false);
+                 2, place_of(geometry.line_count), geometry.line_count, choice.lines, false);
     if (choice.points == 0) return;
-    WorkEntry entry;
-    const WorkKind kind = entry_of_points(geometry, choice, entry);
+    uint32_t first = place_of(geometry.point_count) + run_begin(first_point, choice.points);
+    if (first >= geometry.point_count) first -= geometry.point_count;
+    WorkEntry entry = entry_of_points(geometry, choice);
     entry.instance = instance;
-    add_from(kind, entry, 1, start, geometry.point_count, choice.points, true);
+    const bool differ = choice.point_owner_min > 0 || choice.density_limit_m2 > 0.0f;
+    add_from(differ ? WorkKind::points_blend : kind_of_points(choice.splat_px), entry, 1, first,
+             geometry.point_count, choice.points, true);
 }
 
-WorkKind WorkPart::entry_of_points(const PartGeometry& geometry, const PartChoice& choice, WorkEntry& entry) {
-    entry = {geometry.first_point,
-             0,
-             0,
-             geometry.first_owner,
-             choice.splat_px,
-             choice.point_owner_min,
-             std::bit_cast<uint32_t>(choice.density_limit_m2),
-             choice.mean_facing};
-    // A side a rounding error over a whole pixel must not cost four times the pixels.
-    constexpr float k_slack = 1.0e-3f;
-    return choice.point_owner_min > 0 || choice.density_limit_m2 > 0.0f ? WorkKind::points_blend
-           : choice.splat_px <= 1.0f + k_slack                          ? WorkKind::points_1
-           : choice.splat_px <= 2.0f + k_slack                          ? WorkKind::points_2
-                                                                        : WorkKind::points_any;
+WorkEntry WorkPart::entry_of_points(const PartGeometry& geometry, const PartChoice& choice) {
+    const bool carry_density = choice.density_limit_m2 > 0.0f;
+    return {geometry.first_point,
+            0,
+            0,
+            geometry.first_owner,
+            choice.splat_px,
+            carry_density ? pack_height_gain(choice.height_gain) : choice.point_owner_min,
+            std::bit_cast<uint32_t>(choice.density_limit_m2),
+            choice.mean_facing};
 }
 
-void WorkPart::add(const PartGeometry& geometry, const PartRule& rule, const PartChoices& choices,
+void WorkPart::add(const PartGeometry& geometry, const PartRule& rule, const PartDemands& demands,
+                   const PartChoices& choices, const PlantColumn<uint32_t>& first_points,
                    std::span<const uint8_t> left_out, uint32_t first_instance, float start) {
     using Form = PartRule::Form;
-    // Short runs of points from the beginning, which most are, differ in number and instance only.
-    WorkEntry of_points, of_line_points;
-    auto first_bin = [](WorkKind kind) { return size_t(kind) * k_bins_of_kind + 1; };
-    const size_t bin_of_points =
-        first_bin(entry_of_points(geometry, rule.expand({Form::points, 1, 0.0f}), of_points));
-    const size_t bin_of_line_points =
-        first_bin(entry_of_points(geometry, rule.expand({Form::line_points, 1, 0.0f}), of_line_points));
+    // Short runs of points, which most are, differ in little.
+    const WorkEntry of_points = entry_of_points(geometry, rule.expand({Form::points, 1, 0.0f}, 1.0f));
+    const WorkEntry of_line_points =
+        entry_of_points(geometry, rule.expand({Form::line_points, 1, 0.0f}, 1.0f));
     for (size_t i = 0; i < left_out.size(); ++i) {
         if (left_out[i]) continue;
         const Form form = choices.form[i];
@@ -125,14 +140,19 @@ void WorkPart::add(const PartGeometry& geometry, const PartRule& rule, const Par
         const uint32_t instance = first_instance + uint32_t(i);
         const bool is_points = form == Form::points;
         if (!(is_points || form == Form::line_points) || count > k_primitives_a_lane || start > 0.0f) {
-            add(geometry, rule.expand(choices[i]), instance, start);
+            add(geometry, rule.expand(choices[i], demands.side_gain[i]), instance, start, first_points[i]);
             continue;
         }
         make_room(1);
         WorkEntry entry = is_points ? of_points : of_line_points;
+        const uint32_t first = run_begin(first_points[i], count);
+        entry.first_vertex += first;
+        entry.first_owner += first;
         entry.count = count;
         entry.instance = instance;
-        write((is_points ? bin_of_points : bin_of_line_points) + lane_bucket(count), entry);
+        entry.size_px *= demands.side_gain[i];
+        const WorkKind kind = is_points ? kind_of_points(entry.size_px) : WorkKind::points_blend;
+        write(size_t(kind) * k_bins_of_kind + 1 + lane_bucket(count), entry);
         points += count;
     }
 }

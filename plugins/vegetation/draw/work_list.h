@@ -23,7 +23,8 @@ struct WorkEntry {
     uint32_t instance;      // its highest bit: k_ground_bit
     uint32_t first_owner;   // points_blend only; of clouds the points' densities
     float size_px;          // splat side or line width
-    uint32_t owner_min;     // points_blend; of lines the bits of PartChoice::turned_share
+    uint32_t
+        owner_min;  // points_blend; of those that carry a density PartChoice::height_gain, of lines the bits of its turned_share
     uint32_t
         cull_back;  // triangles: 1: those that turn their back are left out; points: bits of density_limit_m2
     float mean_facing;  // PartChoice's
@@ -53,6 +54,7 @@ struct PartGeometry {
     uint32_t first_triangle_vertex, first_point, first_line_vertex, first_owner;
     bool cull_back;  // the triangles are wound and closed so that their backs are never seen
     uint32_t point_count, line_count;  // stored
+    uint32_t point_turn_mask;          // plant/point_run.h; 0: all plants begin with the first
 };
 
 // What one job adds. Kept from frame to frame, so that a warm frame allocates nothing. Entries stand as they came; gather
@@ -65,9 +67,12 @@ class WorkPart {
     // All there are, which stay where they are until they have been gathered; their indices are those of the span.
     void share_instances(std::span<const WorkInstance> instances) { instances_ = instances; }
     // start in [0, 1): where in their lists the points and lines begin; they go on at the lists' beginning.
-    void add(const PartGeometry& geometry, const PartChoice& choice, uint32_t instance, float start = 0.0f);
+    // first_point: of the plant's run of points, which is moved by start.
+    void add(const PartGeometry& geometry, const PartChoice& choice, uint32_t instance, float start = 0.0f,
+             uint32_t first_point = 0);
     // Choice i of as many as there are in left_out, where that is 0, for instance first_instance + i.
-    void add(const PartGeometry& geometry, const PartRule& rule, const PartChoices& choices,
+    void add(const PartGeometry& geometry, const PartRule& rule, const PartDemands& demands,
+             const PartChoices& choices, const PlantColumn<uint32_t>& first_points,
              std::span<const uint8_t> left_out, uint32_t first_instance, float start);
     void add_ground(uint32_t first_vertex, uint32_t triangle_count, uint32_t instance);
 
@@ -77,10 +82,10 @@ class WorkPart {
     friend class WorkList;
     void add_triangles(uint32_t first_vertex, uint32_t count, uint32_t instance, bool cull_back);
     void add_run(WorkKind kind, WorkEntry entry, uint32_t vertices_a_primitive);
-    void add_from(WorkKind kind, WorkEntry entry, uint32_t vertices_a_primitive, float start, uint32_t stored,
-                  uint32_t count, bool has_owners);
-    // Of points, all but their number and instance.
-    static WorkKind entry_of_points(const PartGeometry& geometry, const PartChoice& choice, WorkEntry& entry);
+    void add_from(WorkKind kind, WorkEntry entry, uint32_t vertices_a_primitive, uint32_t first,
+                  uint32_t stored, uint32_t count, bool has_owners);
+    // Of points, all but their place, number and instance.
+    static WorkEntry entry_of_points(const PartGeometry& geometry, const PartChoice& choice);
     void make_room(size_t count) {
         if (entries_.size() - entry_count_ >= count) return;
         entries_.resize(std::max(2 * entries_.size(), entry_count_ + count));

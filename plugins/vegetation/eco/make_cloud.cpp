@@ -7,6 +7,7 @@
 #include "plugins/vegetation/eco/point_demand.h"
 #include "plugins/vegetation/plant/direction_form.h"
 #include "plugins/vegetation/plant/pack.h"
+#include "plugins/vegetation/plant/point_run.h"
 
 namespace coppice {
 namespace {
@@ -64,12 +65,40 @@ void finish(TileCloud& cloud, const Totals& totals) {
     }
 }
 
+// What is drawn at a density, and that times its height gains.
+struct DrawnGain {
+    double drawn = 0.0, second = 0.0, fourth = 0.0;
+
+    void add(double more, HeightGain gain, HeightGain upright) {
+        drawn += more;
+        second += more * double(gain.second * upright.second);
+        fourth += more * double(gain.fourth * upright.fourth);
+    }
+};
+
+// sum(density) -> DrawnGain of all that is in the cloud.
+template <class Sum>
+void set_height_gain(TileCloud& cloud, Sum&& sum) {
+    PackedPart& part = cloud.part;
+    const double area_m2 = double(mean_projected_area_m2(part));
+    if (!(area_m2 > 0.0)) return;
+    for (uint32_t level = 0; level < part.height_gain.size(); ++level) {
+        const double fill = double(fill_at_level(2 * level + 1));
+        const DrawnGain at = sum(fill * double(part.point_count) / area_m2);
+        if (at.drawn > 0.0)
+            part.height_gain[level] =
+                round_height_gain({float(at.second / at.drawn), float(at.fourth / at.drawn)});
+    }
+}
+
 // One part of one plant, and the next of its points.
 struct Source {
     const PointDemand* demand;
     uint32_t plant, part;
     double scale_square;
+    HeightGain upright;  // share that is left of the part's by how the plant leans
     float chance;
+    uint32_t first_point;
     uint32_t given = 0;  // points so far
     LinePoint point{};   // the next
     float density = 0.0f;
@@ -82,9 +111,10 @@ bool find_point(Source& source, const Plant& plant) {
     if (source.given >= demand.stored_count()) return false;
     const double asked = double(source.given) + 1.0 - double(source.chance);
     const double density = demand.density(asked) / source.scale_square;
+    const uint32_t next = point_of_run(source.first_point, source.given);
     source.point = part.kind == PackedPartKind::lines
-                       ? line_point(part, plant.line_vertices, source.given)
-                       : LinePoint{plant.points[size_t(part.first_point) + source.given], 1.0f};
+                       ? line_point(part, plant.line_vertices, next)
+                       : LinePoint{plant.points[size_t(part.first_point) + next], 1.0f};
     source.density = std::max(
         source.density,
         pack_density(std::min(density, k_densest), source.point.width_share / float(demand.importance())));
@@ -130,6 +160,7 @@ TileCloud gather_cloud(std::span<const PlantPosition> positions, std::span<const
         const double scale_square = double(positions[i].scale) * double(positions[i].scale);
         std::array<vec3, k_projection_direction_count> directions_plant = projection_directions();
         const mat3 rotation = rotation_matrix(turns[i]);
+        const HeightGain upright{legendre_2(rotation[1].y), legendre_4(rotation[1].y)};
         for (vec3& d : directions_plant) d = d * rotation;
         for (size_t p = 0; p < parts.size(); ++p) {
             const PointDemand& demand = parts[p];
@@ -148,8 +179,10 @@ TileCloud gather_cloud(std::span<const PlantPosition> positions, std::span<const
                                          ? demand.density(double(demand.stored_count())) / scale_square
                                          : 0.0;
             totals.exhausted_area_m2[density_step(exhausted)] += area_m2;
-            sources.push_back(
-                {&demand, uint32_t(i), uint32_t(p), scale_square, part_chance(models[i], uint32_t(p))});
+            const uint32_t number = uint32_t(p);
+            sources.push_back({&demand, uint32_t(i), number, scale_square, upright,
+                               part_chance(models[i], number),
+                               first_point_of(models[i].seed, number, point_turn_mask(demand.stored_count()))});
         }
     }
 
@@ -183,6 +216,16 @@ TileCloud gather_cloud(std::span<const PlantPosition> positions, std::span<const
     }
 
     finish(cloud, totals);
+    set_height_gain(cloud, [&sources](double density) {
+        DrawnGain sum;
+        for (const Source& source : sources) {
+            const PointDemand& demand = *source.demand;
+            const double density_plant = density * source.scale_square;
+            sum.add(demand.area_m2() * source.scale_square * demand.gain(density_plant),
+                    demand.height_gain(density_plant), source.upright);
+        }
+        return sum;
+    });
     return cloud;
 }
 
@@ -223,6 +266,19 @@ TileCloud merge_clouds(std::span<const TileCloud* const> children, std::span<con
     }
 
     finish(cloud, totals);
+    set_height_gain(cloud, [children](double density) {
+        DrawnGain sum;
+        for (const TileCloud* child : children) {
+            if (child->points.empty()) continue;
+            const double fill =
+                density * double(mean_projected_area_m2(child->part)) / double(child->part.point_count);
+            const auto drawn =
+                std::upper_bound(child->densities.begin(), child->densities.end(), float(density)) -
+                child->densities.begin();
+            sum.add(double(drawn), height_gain_at(child->part, float(fill)), {1.0f, 1.0f});
+        }
+        return sum;
+    });
     return cloud;
 }
 

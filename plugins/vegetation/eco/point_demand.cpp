@@ -4,12 +4,6 @@
 #include "plugins/vegetation/plant/line_points.h"
 
 namespace coppice {
-namespace {
-
-double fill_at_level(size_t level) { return 1.0 / double(1u << (k_gain_levels - 1 - level)); }
-
-}  // namespace
-
 PointDemand::PointDemand(const PackedPart& part, float model_importance)
     : part_(&part), lines_(part.kind == PackedPartKind::lines) {
     const double importance = double(part.importance) * double(model_importance);
@@ -28,15 +22,23 @@ PointDemand::PointDemand(const PackedPart& part, float model_importance)
     }
     double most = 0.0;
     for (size_t level = 0; level < k_gain_levels; ++level) {
-        most = std::max(most, fill_power(fill_at_level(level)) * double(part.coverage_gain[level]));
+        most = std::max(
+            most, fill_power(double(fill_at_level(uint32_t(level)))) * double(part.coverage_gain[level]));
         reach_[level] = most;
     }
 }
 
-double PointDemand::gain(double density) const {
-    if (stored_count_ == 0) return 1.0;
+float PointDemand::fill(double density) const {
     const double power = density / unit_;
-    return double(gain_at(*part_, float(lines_ ? std::sqrt(power) : power)));
+    return float(lines_ ? std::sqrt(power) : power);
+}
+
+double PointDemand::gain(double density) const {
+    return stored_count_ == 0 ? 1.0 : double(gain_at(*part_, fill(density)));
+}
+
+HeightGain PointDemand::height_gain(double density) const {
+    return stored_count_ == 0 ? HeightGain{} : height_gain_at(*part_, fill(density));
 }
 
 double PointDemand::density(double count) const {
@@ -48,7 +50,7 @@ double PointDemand::density(double count) const {
     // Between two levels the gain is straight in fill (gain_at): asked = u^power (low + step (u - 1)), u in [1, 2].
     // Newton's steps from the chord; three are exact to a double's rounding where gains differ by a quarter.
     const double low = double(gains[level - 1]), step = double(gains[level]) - low;
-    const double begin = fill_power(fill_at_level(level - 1)), target = asked / begin;
+    const double begin = fill_power(double(fill_at_level(uint32_t(level - 1)))), target = asked / begin;
     double u = 1.0 + (target - low) / (fill_power(2.0) * (low + step) - low);
     for (int i = 0; i < 5; ++i) {
         u = std::clamp(u == u ? u : 2.0, 1.0, 2.0);

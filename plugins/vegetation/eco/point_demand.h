@@ -19,11 +19,13 @@ class PointDemand {
     uint32_t stored_count() const { return stored_count_; }  // points; 0: triangles only
     double importance() const { return importance_; }
     double gain(double density) const;
+    HeightGain height_gain(double density) const;
     double count(double density) const { return density * area_m2_ * gain(density) * importance_; }
     // The least density that asks for `count` points; never falls while count grows. Requires points or lines.
     double density(double count) const;
 
   private:
+    float fill(double density) const;
     double fill_power(double fill) const { return lines_ ? fill * fill : fill; }
 
     const PackedPart* part_;

@@ -15,7 +15,7 @@
 namespace coppice {
 
 // Of the format, and of what build_tile_tree makes of a scene: packs of another version are made again.
-inline constexpr uint32_t k_tiles_version = 2;
+inline constexpr uint32_t k_tiles_version = 3;
 inline constexpr uint32_t k_tiles_node_limit = 1u << 22;  // of a pack
 inline constexpr uint32_t k_tiles_item_limit = 1u << 20;  // points of a cloud, plants of a leaf
 // Of coordinates from a tile's origin, and of origins; the earth's circumference is 4e7 m.

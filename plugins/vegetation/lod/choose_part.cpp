@@ -33,10 +33,12 @@ PartRule::PartRule(const PackedPart& part, const FrameSettings& settings)
       point_count_(part.point_count),
       line_count_(part.line_count) {
     const bool measured = settings.projection == ProjectionMode::measured;
-    if (measured)
+    gains_.fill(1.0f);
+    if (measured) {
         gains_ = part.coverage_gain;
-    else
-        gains_.fill(1.0f);
+        for (size_t level = 0; level < height_gains_.size(); ++level)
+            height_gains_[level] = height_gain_of(part.height_gain[level]);
+    }
     points_per_px2_ = settings.splat_factor * importance_ / (d_px_ * d_px_);
     per_fill_px2_ = 1.0f / (points_ * d_px_ * d_px_);
     triangles_from_ = settings.blend ? 1.5f * points_ : points_;
@@ -56,7 +58,7 @@ PartRule::PartRule(const PackedPart& part, const FrameSettings& settings)
     line_width_px_ = line_d_px_ / importance_;
 }
 
-PartChoice PartRule::expand(const Choice& choice) const {
+PartChoice PartRule::expand(const Choice& choice, float side_gain) const {
     PartChoice out;
     switch (choice.form) {
         case Form::triangles:
@@ -64,24 +66,24 @@ PartChoice PartRule::expand(const Choice& choice) const {
             return out;
         case Form::lines:
             out.lines = std::min(choice.count, line_count_);
-            out.line_width_px = line_width_px_;
+            out.line_width_px = line_width_px_ * (side_gain * side_gain);
             out.turned_share = 1.0f - std::sqrt(choice.asked);
             return out;
         case Form::line_points:
             out.points = choice.count;
             out.density_limit_m2 = INFINITY;
-            out.splat_px = splat_px_;
+            out.splat_px = splat_px_ * side_gain;
             break;
         case Form::points:
             out.points = std::min(choice.count, point_count_);
-            out.splat_px = splat_px_;
+            out.splat_px = splat_px_ * side_gain;
             break;
         case Form::blend:
             out.points = point_count_;
             out.triangles = out.point_owner_min = std::min(choice.count, triangle_count_);
             out.skipped_points =
                 uint32_t(uint64_t(point_count_) * out.triangles / std::max(triangle_count_, 1u));
-            out.splat_px = splat_px_ * std::sqrt(choice.asked / points_);
+            out.splat_px = splat_px_ * side_gain * std::sqrt(choice.asked / points_);
             break;
     }
     out.mean_facing = mean_facing_;
@@ -91,9 +93,12 @@ PartChoice PartRule::expand(const Choice& choice) const {
 PartDemand PartRule::demand(const PartProjection& projected) const {
     const float per_meter_px = projected.pixels_per_meter, area_px2 = projected.area_px2;
     auto gain = [this](float fill) { return gain_at(gains_, gain_place(fill)); };
-    if (is_points_) return {per_meter_px, area_px2 * gain(area_px2 * per_fill_px2_), 0.0f, 0.0f};
-    return {per_meter_px, area_px2 * gain(area_px2 / (projected.length_px * line_d_px_)), projected.length_px,
-            line_points(per_meter_px, gain(line_points_fill_m_ * per_meter_px))};
+    const float fill = is_points_ ? area_px2 * per_fill_px2_ : area_px2 / (projected.length_px * line_d_px_);
+    const float side_gain =
+        side_gain_of(height_gain_at(height_gains_, height_gain_place(fill)), projected.height);
+    if (is_points_) return {per_meter_px, area_px2 * gain(fill), 0.0f, 0.0f, side_gain};
+    return {per_meter_px, area_px2 * gain(fill), projected.length_px,
+            line_points(per_meter_px, gain(line_points_fill_m_ * per_meter_px)), side_gain};
 }
 
 namespace {
@@ -111,6 +116,24 @@ void gains_at(const std::array<float, k_gain_levels>& gains, const PlantColumn<f
         share[i] = place.share;
     }
     for (size_t i = 0; i < count; ++i) out[i] = gain_at(gains, {level[i], share[i]});
+}
+
+COPPICE_VECTOR_CLONES
+void side_gains_at(const std::array<HeightGain, k_height_gain_levels>& gains, const PlantColumn<float>& fill,
+                   const PlantColumn<float>& height, size_t count, PlantColumn<float>& out) {
+    PlantColumn<int32_t> level;
+    PlantColumn<float> share, second, fourth;
+    for (size_t i = 0; i < count; ++i) {
+        const GainPlace place = height_gain_place(fill[i]);
+        level[i] = place.level;
+        share[i] = place.share;
+    }
+    for (size_t i = 0; i < count; ++i) {
+        const HeightGain gain = height_gain_at(gains, {level[i], share[i]});
+        second[i] = gain.second;
+        fourth[i] = gain.fourth;
+    }
+    for (size_t i = 0; i < count; ++i) out[i] = side_gain_of({second[i], fourth[i]}, height[i]);
 }
 
 COPPICE_VECTOR_CLONES
@@ -132,15 +155,15 @@ void choose_all(const PartRule& rule, const PartDemands& demands, const float* c
     if (local.is_points())
         for (size_t i = 0; i < count; ++i) {
             const PartRule::Choice choice =
-                local.choose_points({per_meter_px[i], area_px2[i], 0.0f, 0.0f}, chances[i]);
+                local.choose_points({per_meter_px[i], area_px2[i], 0.0f, 0.0f, 1.0f}, chances[i]);
             forms[i] = choice.form;
             counts[i] = choice.count;
             asked[i] = choice.asked;
         }
     else
         for (size_t i = 0; i < count; ++i) {
-            const PartRule::Choice choice =
-                local.choose_lines({per_meter_px[i], area_px2[i], length_px[i], line_points[i]}, chances[i]);
+            const PartRule::Choice choice = local.choose_lines(
+                {per_meter_px[i], area_px2[i], length_px[i], line_points[i], 1.0f}, chances[i]);
             forms[i] = choice.form;
             counts[i] = choice.count;
             asked[i] = choice.asked;
@@ -163,6 +186,7 @@ void PartRule::demand(const PackedPart& part, const PlantViews& views, const Fra
             fill[i] = projected.area_px2[i] / (projected.length_px[i] * line_d_px_);
     }
     gains_at(gains_, fill, count, gain);
+    side_gains_at(height_gains_, fill, projected.height, count, out.side_gain);
     multiply(projected.area_px2.data(), gain.data(), count, out.area_px2.data());
     if (is_points_) return;
     multiply(views.pixels_per_meter.data(), line_points_fill_m_, count, fill.data());
@@ -180,8 +204,9 @@ void choose_parts(const PartRule& rule, const PartDemands& demands, std::span<co
                out.asked.data());
 }
 
-PartChoice choose_cloud(std::span<const float> densities, float pixels_per_meter, float depth_m,
-                        float nearest_pixels_per_meter, const FrameSettings& settings) {
+PartChoice choose_cloud(const PackedPart& part, std::span<const float> densities, float pixels_per_meter,
+                        float distance_m, float depth_m, float nearest_pixels_per_meter,
+                        const FrameSettings& settings) {
     PartChoice choice;
     const float d = sample_distance(settings);
     auto density_at = [&](float per_meter_px) {
@@ -193,23 +218,29 @@ PartChoice choose_cloud(std::span<const float> densities, float pixels_per_meter
     const float density = density_at(pixels_per_meter);
     choice.points = count_up_to(density_at(nearest_pixels_per_meter));
     choice.skipped_points = choice.points - std::min(choice.points, count_up_to(density));
-    choice.density_limit_m2 = depth_m > 0.0f ? density * depth_m * depth_m : INFINITY;
+    choice.density_limit_m2 =
+        depth_m > 0.0f ? density * depth_m * depth_m * (depth_m / distance_m) : INFINITY;
     choice.splat_px = d;  // the squares of p = c_p A' / d'^2 points add up to c_p A'
     if (settings.weigh_by_facing) {
         choice.mean_facing = 0.5f;
         choice.splat_px /= std::sqrt(choice.mean_facing);
     }
+    if (settings.projection == ProjectionMode::measured && part.point_count > 0)
+        choice.height_gain =
+            height_gain_at(part, density * mean_projected_area_m2(part) / float(part.point_count));
     return choice;
 }
 
 float widest_spread_px(float least_importance, float most_line_width, const FrameSettings& settings) {
     if (!settings.level_of_detail) return 0.0f;
     // choose_points: a part's last points cover up to 1.5 times the square of d' over importance; those of lines are as
-    // large as these are wide. Half of that is seen in the mean over directions.
-    const float share = std::max(1.5f, most_line_width) * (settings.weigh_by_facing ? 2.0f : 1.0f);
+    // large as these are wide. Half of that is seen in the mean over directions. From above they may be larger.
+    const float share =
+        std::max(1.5f, most_line_width) * (settings.weigh_by_facing ? 2.0f : 1.0f) * k_largest_seen_gain;
     const float splat_px = sample_distance(settings) * std::sqrt(share / least_importance);
     const float line_px = std::min(
-        1.4143f * line_sample_distance(settings) / least_importance * most_line_width, k_widest_line_px);
+        1.4143f * line_sample_distance(settings) / least_importance * most_line_width * k_largest_seen_gain,
+        k_widest_line_px);
     return 0.5f * std::max(splat_px, line_px);
 }
 

@@ -23,8 +23,9 @@ struct PartChoice {
     // size.
     float mean_facing = 0.0f;
     // Of points that carry a density and a size (plant/line_points.h): drawn are those of `points` whose density T, times
-    // the square of their distance along the view in m, is at most this. 0: others, which are of one size.
+    // the cube of their distance along the view in m over their distance, is at most this. 0: others, which are of one size.
     float density_limit_m2 = 0.0f;
+    HeightGain height_gain;  // of those; each is looked at from a height of its own
 };
 
 // What a plant asks of one of its parts at the frame's d'.
@@ -33,16 +34,20 @@ struct PartDemand {
     float area_px2;     // that points or lines are to cover: A'_p times the gain
     float length_px;    // l'; only of lines
     float line_points;  // p of the points that may stand in the place of lines
+    float side_gain;  // how many times as long the sides of points are, from that height; lines as its square
 };
 // The same of many plants of one model.
 struct PartDemands {
     std::span<const float> pixels_per_meter;
-    PlantColumn<float> area_px2;
+    PlantColumn<float> area_px2, side_gain;
     PlantColumn<float> length_px, line_points;  // left alone for parts of points
     PartDemand operator[](size_t i) const {
-        return {pixels_per_meter[i], area_px2[i], length_px[i], line_points[i]};
+        return {pixels_per_meter[i], area_px2[i], length_px[i], line_points[i], side_gain[i]};
     }
 };
+
+// From above and from the side other shares of a plant are hidden. How many points there are does not depend on it.
+inline float side_gain_of(HeightGain gain, float height) { return std::sqrt(seen_gain(gain, height)); }
 
 // The rules for one part, with all that the plants of a frame have in common. What remains for each plant has no branches,
 // so that compilers make vectors of loops over plants.
@@ -72,7 +77,7 @@ class PartRule {
     Choice choose(const PartDemand& demand, float chance) const {
         return is_points_ ? choose_points(demand, chance) : choose_lines(demand, chance);
     }
-    PartChoice expand(const Choice& choice) const;
+    PartChoice expand(const Choice& choice, float side_gain) const;
     // Whether points or lines do not suffice.
     bool draws_triangles(const PartDemand& demand) const {
         const Form form = choose(demand, 0.0f).form;
@@ -147,6 +152,7 @@ class PartRule {
 
     bool is_points_, always_triangles_;
     std::array<float, k_gain_levels> gains_;  // 1 where nothing was measured
+    std::array<HeightGain, k_height_gain_levels> height_gains_{};
     float d_px_, line_d_px_;
     float importance_;
     float points_, lines_, line_points_;  // stored
@@ -176,14 +182,16 @@ void choose_parts(const PartRule& rule, const PartDemands& demands, std::span<co
 inline PartChoice choose_part(const PackedPart& part, const PlantView& view, const FrameSettings& settings,
                               float chance) {
     const PartRule rule(part, settings);
-    return rule.expand(rule.choose(rule.demand(project_part(part, view, settings)), chance));
+    const PartDemand demand = rule.demand(project_part(part, view, settings));
+    return rule.expand(rule.choose(demand, chance), demand.side_gain);
 }
 
 // Points that stand for a whole tile: at each place those whose density is at most what it asks for at its own distance,
 // which are those the plants would draw there. densities: of the cloud's points, ascending (eco/make_cloud.h);
-// pixels_per_meter: at the tile's centre, depth_m along the view; nearest_pixels_per_meter >= that.
-PartChoice choose_cloud(std::span<const float> densities, float pixels_per_meter, float depth_m,
-                        float nearest_pixels_per_meter, const FrameSettings& settings);
+// pixels_per_meter: at the tile's centre, distance_m away, depth_m along the view; nearest_pixels_per_meter >= pixels_per_meter.
+PartChoice choose_cloud(const PackedPart& part, std::span<const float> densities, float pixels_per_meter,
+                        float distance_m, float depth_m, float nearest_pixels_per_meter,
+                        const FrameSettings& settings);
 
 // How far beside their geometry points and lines cover pixels at most, along an axis of the picture.
 // least_importance: of all parts; most_line_width: of all lines, over their part's mean.

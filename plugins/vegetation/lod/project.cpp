@@ -1,5 +1,6 @@
 #include "plugins/vegetation/lod/project.h"
 
+#include <algorithm>
 #include "runtime/core/vector_clones.h"
 
 namespace coppice {
@@ -56,15 +57,22 @@ float projected_length_px(const PackedPart& part, const PlantView& view, Project
 
 PartProjection project_part(const PackedPart& part, const PlantView& view, const FrameSettings& settings) {
     const float per_meter = view.pixels_per_meter;
-    if (is_mean(part, settings)) return {per_meter, mean_projected_area_m2(part) * (per_meter * per_meter)};
-    const float area_px2 = projected_area_px2(part, view, settings.projection);
-    return {per_meter, area_px2,
-            part.kind == PackedPartKind::lines ? projected_length_px(part, view, settings.projection) : 0.0f};
+    const bool lines = part.kind == PackedPartKind::lines, mean = is_mean(part, settings);
+    PartProjection projection{per_meter};
+    projection.area_px2 = mean ? mean_projected_area_m2(part) * (per_meter * per_meter)
+                               : projected_area_px2(part, view, settings.projection);
+    if (lines) projection.length_px = projected_length_px(part, view, settings.projection);
+    if (lines || mean) projection.height = view.direction_plant.y;
+    return projection;
 }
 
 void project_parts(const PackedPart& part, const PlantViews& views, const FrameSettings& settings,
                    PartColumns& out) {
     const bool measured = settings.projection == ProjectionMode::measured;
+    if (is_mean(part, settings) || part.kind == PackedPartKind::lines)
+        std::copy(views.direction_y.begin(), views.direction_y.end(), out.height.begin());
+    else
+        std::fill_n(out.height.begin(), views.size(), k_mean_height);
     if (is_mean(part, settings))
         to_pixels(mean_projected_area_m2(part), true, views, out.area_px2.data());
     else if (measured)

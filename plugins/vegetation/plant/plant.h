@@ -48,6 +48,32 @@ enum class PackedPartKind : uint32_t { points = 0, lines = 1 };
 // is resolved at d' = 1.
 inline constexpr uint32_t k_gain_levels = 16;
 
+// How points and lines are sized by the height that the plant is looked at from: from above other shares of it are hidden
+// than from the side. A size goes with 1 + second P_2 + fourth P_4, Legendre's polynomials of the height's sine, so that the
+// mean over all directions stays; and of plants that are turned about the vertical in all ways and lean by an angle whose
+// cosine is c, each is P(c) times as much.
+struct HeightGain {
+    float second = 0.0f, fourth = 0.0f;
+};
+inline float legendre_2(float x) { return 1.5f * x * x - 0.5f; }
+inline float legendre_4(float x) { return (4.375f * x * x - 3.75f) * x * x + 0.375f; }
+// As stored, in steps of 1 / k_height_steps.
+struct HeightSteps {
+    int8_t second, fourth;
+};
+inline constexpr float k_height_steps = 60.0f;
+inline HeightSteps round_height_gain(HeightGain gain) {
+    auto round = [](float value) {
+        const float steps = std::floor(value * k_height_steps + 0.5f);
+        return int8_t(steps < -127.0f ? -127.0f : steps < 127.0f ? steps : 127.0f);
+    };
+    return {round(gain.second), round(gain.fourth)};
+}
+inline HeightGain height_gain_of(HeightSteps steps) {
+    return {float(steps.second) / k_height_steps, float(steps.fourth) / k_height_steps};
+}
+inline constexpr uint32_t k_height_gain_levels = k_gain_levels / 2;
+
 // One part, or one octree cell's share of a part. 256 bytes.
 struct PackedPart {
     char name[32];                            // UTF-8, zero-terminated
@@ -68,30 +94,56 @@ struct PackedPart {
     float mean_color_linear[3];
     std::array<float, k_gain_levels> coverage_gain;  // cook/measure_coverage.h
     uint32_t part;                                   // of a cell: index of the part it is cut from; else 0
-    uint32_t reserved[4];
+    std::array<HeightSteps, k_height_gain_levels> height_gain;  // of every second level
 };
 static_assert(sizeof(PackedPart) == 256);
 
-// The coverage gain at a fill > 0, between the levels by (piecewise linear) logarithm. In [0.25, 4] of a checked part.
+// Of level k_gain_levels - 1 it is 1. The levels of height_gain are 1, 3, 5 ...
+inline float fill_at_level(uint32_t level) { return 1.0f / float(1u << (k_gain_levels - 1 - level)); }
+// Between which levels a fill > 0 lies, by piecewise linear logarithm.
 struct GainPlace {
-    int32_t level;  // in [0, k_gain_levels - 2]
+    int32_t level;  // not the last one
     float share;    // of the next level
 };
-inline GainPlace gain_place(float fill) {
+inline GainPlace place_among(float fill, uint32_t count, float levels_an_octave) {
     // Exponent and mantissa read as one number: the logarithm, with straight lines between powers of two.
-    constexpr float k_last = float(k_gain_levels - 1);
+    const float last = float(count - 1);
     const float logarithm =
         float(std::bit_cast<int32_t>(fill > 1.0e-30f ? fill : 1.0e-30f)) * 0x1p-23f - 127.0f;
-    const float above_first = logarithm + k_last > 0.0f ? logarithm + k_last : 0.0f;
-    const float place = above_first < k_last ? above_first : k_last;
-    const int32_t level = int32_t(place < k_last - 1.0f ? place : k_last - 1.0f);
+    const float from_first = logarithm * levels_an_octave + last;
+    const float above_first = from_first > 0.0f ? from_first : 0.0f;
+    const float place = above_first < last ? above_first : last;
+    const int32_t level = int32_t(place < last - 1.0f ? place : last - 1.0f);
     return {level, place - float(level)};
 }
+inline GainPlace gain_place(float fill) { return place_among(fill, k_gain_levels, 1.0f); }
+inline GainPlace height_gain_place(float fill) { return place_among(fill, k_height_gain_levels, 0.5f); }
+// The coverage gain, in [1/16, 4] of a checked part.
 inline float gain_at(const std::array<float, k_gain_levels>& gains, GainPlace place) {
     return gains[size_t(place.level)] * (1.0f - place.share) + gains[size_t(place.level) + 1] * place.share;
 }
 inline float gain_at(const PackedPart& part, float fill) {
     return gain_at(part.coverage_gain, gain_place(fill));
+}
+inline HeightGain height_gain_at(const std::array<HeightGain, k_height_gain_levels>& gains, GainPlace place) {
+    const HeightGain &low = gains[size_t(place.level)], &high = gains[size_t(place.level) + 1];
+    return {low.second * (1.0f - place.share) + high.second * place.share,
+            low.fourth * (1.0f - place.share) + high.fourth * place.share};
+}
+inline HeightGain height_gain_at(const PackedPart& part, float fill) {
+    const GainPlace place = height_gain_place(fill);
+    std::array<HeightGain, k_height_gain_levels> gains{};
+    for (size_t level : {size_t(place.level), size_t(place.level) + 1})
+        gains[level] = height_gain_of(part.height_gain[level]);
+    return height_gain_at(gains, place);
+}
+// How many times as large points and lines are drawn where the plant is looked at from that height, in [-1, 1].
+inline constexpr float k_least_seen_gain = 0.1f, k_largest_seen_gain = 1.6f;
+inline float seen_gain(HeightGain gain, float height) {
+    const float seen = 1.0f + gain.second * legendre_2(height) + gain.fourth * legendre_4(height);
+    return seen < k_least_seen_gain     ? k_least_seen_gain
+           : seen < k_largest_seen_gain ? seen
+                                        : k_largest_seen_gain;
 }
 
 // What is seen of the part in the mean over all directions, whatever its shape: half its surface, of which a closed one

@@ -81,6 +81,7 @@ PackedTerrain pack_ground(const HeightField& field, std::span<const uint32_t> wo
     packed.bytes.resize(head.file_bytes());
     std::byte* to = packed.bytes.data();
     auto append = [&to](const void* from, size_t size_bytes) {
+        if (size_bytes == 0) return;  // from may be null then
         std::memcpy(to, from, size_bytes);
         to += size_bytes;
     };

@@ -23,8 +23,8 @@ struct PlantModel {
     uint32_t seed;   // any well mixed bits; decides fractions of primitives
 };
 
-// Plant space to world space; its transpose turns back.
 inline constexpr float k_turn_step = 1.0f / 32767.0f;
+// Plant space to world space; its transpose turns back. draw/see_plants.cpp and draw/raster.glsl have it as well.
 inline mat3 rotation_matrix(PlantTurn turn) {
     const float x = float(turn.x) * k_turn_step, y = float(turn.y) * k_turn_step;
     const float z = float(turn.z) * k_turn_step, w = float(turn.w) * k_turn_step;

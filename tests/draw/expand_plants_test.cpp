@@ -67,9 +67,8 @@ class ExpandCells : public ::testing::Test {
         const PlantModel model{0, 5};
         WorkList work;
         work.begin(1);
-        SeenPlants seen;
         expand_run({vec3(0.0f), false, {&position, 1}, {&turn, 1}, {&model, 1}}, geometry,
-                   frustum_of(vertical_fov_rad), settings, 0, seen, work.part(0));
+                   frustum_of(vertical_fov_rad), settings, 0, seen_, work.part(0));
         return work;
     }
     static double points_a_m2(uint32_t cell, float distance_m, const FrameSettings& settings) {
@@ -91,6 +90,7 @@ class ExpandCells : public ::testing::Test {
     }
 
     static inline SceneGeometry* geometry_ = nullptr;
+    static inline SeenPlants seen_;  // holds the instances of the last work list
 };
 
 FrameSettings coarse(float sample_distance_px) {

@@ -6,7 +6,8 @@ namespace coppice {
 
 class FramePlants {
   public:
-    // Of the list's runs; horizon and spread_px as for see_plants. The list must hold until the last draw.
+    // Of the list's runs; horizon and spread_px as for see_plants. The list must hold until the last draw, and what was seen until
+    // that has been gathered.
     void see(const TileList& tiles, const SceneGeometry& geometry, const Frustum& frustum,
              const Horizon* horizon, float spread_px);
 

@@ -33,11 +33,11 @@ const uint k_view_lit = 0u, k_view_kinds = 1u;
 struct Entry {
     uint first_vertex, count, instance, first_owner;
     float size_px;   // splat side or line width
-    uint owner_min;
+    uint owner_min;  // of points that carry a density their height gain, of lines the share that is turned
     bool cull_back;   // of triangles
     bool ground;
     float mean_facing;    // of points: |cos| of normal and view in the mean; 0: all are of one size
-    float density_limit;  // of a cloud's points: density times w^2 of what is drawn; 0: no cloud
+    float density_limit;  // PartChoice::density_limit_m2; 0: points carry no density
 };
 
 // The entry of this lane, false where there is none; its primitives are i = first; i < count; i += step.

@@ -26,7 +26,7 @@ inline PlantView view_of(const Frustum& frustum, const mat3& rotation, vec3 cent
 struct Block {
     Column x, y, z, scale;                  // of the foot, camera-relative
     Column turn_x, turn_y, turn_z, turn_w;  // PlantTurn
-    std::array<uint16_t, k_block> index;    // in the run
+    std::array<uint32_t, k_block> index;    // in the run
     Column reach_m;                         // into the view, past the nearest plane; < 0: outside
     Column center_x, center_y, center_z;    // of the sphere that holds the plant
     Column radius_m, distance_m;
@@ -60,14 +60,14 @@ size_t load_block(const PlantRun& run, size_t first, size_t count, const DrawMod
     }
     size_t found = count;
     if (run.inside) {
-        for (size_t i = 0; i < count; ++i) block.index[i] = uint16_t(first + i);
+        for (size_t i = 0; i < count; ++i) block.index[i] = uint32_t(first + i);
     } else {
         for (size_t i = 0; i < count; ++i) block.radius_m[i] = model.foot_radius_m * block.scale[i];
         reach_into_view(frustum, block.x.data(), block.y.data(), block.z.data(), block.radius_m.data(),
                         block.reach_m.data(), count);
         found = 0;
         for (size_t i = 0; i < count; ++i) {
-            block.index[found] = uint16_t(first + i);
+            block.index[found] = uint32_t(first + i);
             block.x[found] = block.x[i];
             block.y[found] = block.y[i];
             block.z[found] = block.z[i];

@@ -61,7 +61,7 @@ struct SeenPart {
 template <class Many, class Cell>
 void each_part(const SeenPlants& seen, const SceneGeometry& geometry, const FrameSettings& settings,
                Many&& many, Cell&& cell) {
-    PartDemands demands;
+    PartDemands demands{};
     PlantColumn<uint8_t> left_out;
     auto visit_cell = [&](uint32_t plant, uint32_t part, uint32_t part_of_model, const PlantView& view) {
         const PackedPart& of = geometry.parts[part];

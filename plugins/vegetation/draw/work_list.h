@@ -4,6 +4,7 @@
 #pragma once
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -61,11 +62,17 @@ struct PartGeometry {
 // sorts them by the dispatch they belong to.
 class WorkPart {
   public:
+    WorkPart() = default;
+    WorkPart(WorkPart&&) = default;
+    WorkPart& operator=(WorkPart&&) = default;
     void clear();
     // Index of the instance within this part, for add().
     uint32_t add_instance(const WorkInstance& instance);
     // All there are, which stay where they are until they have been gathered; their indices are those of the span.
-    void share_instances(std::span<const WorkInstance> instances) { instances_ = instances; }
+    void share_instances(std::span<const WorkInstance> instances) {
+        assert(own_instances_.empty());
+        instances_ = instances;
+    }
     // start in [0, 1): where in their lists the points and lines begin; they go on at the lists' beginning.
     // first_point: of the plant's run of points, which is moved by start.
     void add(const PartGeometry& geometry, const PartChoice& choice, uint32_t instance, float start = 0.0f,

@@ -139,28 +139,33 @@ void add_part(BudgetHistogram& histogram, const PackedPart& part, const PartRule
               const PartDemand& demand, const FrameSettings& settings) {
     const float all = 3.0f * float(part.triangle_count);
     if (!settings.level_of_detail) return histogram.add_always(all);
-    if (part.triangle_count == 0 || !(demand.area_px2 > 0.0f)) return;
+    if (part.triangle_count == 0) return;
+    const bool any = demand.area_px2 > 0.0f;
     if (rule.is_points()) {
+        if (!any) return;
         if (part.point_count == 0) return histogram.add_always(all);
         const float wanted = rule.at_1px(rule.point_count(demand.area_px2));
         if (settings.blend) return histogram.add_points(wanted, float(part.point_count), all);
         return histogram.add_switching_points(wanted, float(part.point_count), all);
     }
-    if (part.line_count == 0 || !(demand.length_px > 0.0f)) return histogram.add_always(all);
-    const float all_lines_px = part.importance * demand.area_px2 / demand.length_px;  // the d' of q = 1
+    // On edge nothing is seen of a part, but the points that stand for it are those of all directions.
+    if (!any && !(demand.line_points > 0.0f)) return;
+    if (any && (part.line_count == 0 || !(demand.length_px > 0.0f))) return histogram.add_always(all);
+    // The d' of q = 1.
+    const float all_lines_px = any ? part.importance * demand.area_px2 / demand.length_px : 0.0f;
     const float error_px = part.line_error_m * demand.pixels_per_meter;
     const float points_from_px = rule.line_points_from_px(demand);
     if (settings.line_sample_distance_px > 0.0f) {  // lines are held there
         const float d = std::max(settings.line_sample_distance_px, 1.0e-3f);
-        if (d < all_lines_px || d <= error_px) return histogram.add_always(all);
+        if (any && (d < all_lines_px || d <= error_px)) return histogram.add_always(all);
         if (d >= points_from_px)
             return histogram.add_saturating(rule.at_1px(demand.line_points), float(line_point_count(part)),
                                             1.0f);
         return histogram.add_always(2.0f * float(part.line_count) * all_lines_px / d);
     }
     histogram.add_lines_and_points(2.0f * float(part.line_count) * all_lines_px,
-                                   std::max(all_lines_px, error_px), all, rule.at_1px(demand.line_points),
-                                   points_from_px);
+                                   any ? std::max(all_lines_px, error_px) : 0.0f, all,
+                                   rule.at_1px(demand.line_points), points_from_px);
 }
 
 void add_cloud(BudgetHistogram& histogram, std::span<const float> densities, float pixels_per_meter,

@@ -34,8 +34,9 @@ PartRule::PartRule(const PackedPart& part, const FrameSettings& settings)
       line_count_(part.line_count) {
     const bool measured = settings.projection == ProjectionMode::measured;
     gains_.fill(1.0f);
-    if (measured) {
-        gains_ = part.coverage_gain;
+    if (measured) gains_ = part.coverage_gain;
+    // Points of one size were not measured by height.
+    if (measured && (!is_points_ || settings.weigh_by_facing)) {
         for (size_t level = 0; level < height_gains_.size(); ++level)
             height_gains_[level] = height_gain_of(part.height_gain[level]);
     }
@@ -120,7 +121,7 @@ void gains_at(const std::array<float, k_gain_levels>& gains, const PlantColumn<f
 
 COPPICE_VECTOR_CLONES
 void side_gains_at(const std::array<HeightGain, k_height_gain_levels>& gains, const PlantColumn<float>& fill,
-                   const PlantColumn<float>& height, size_t count, PlantColumn<float>& out) {
+                   const float* height, size_t count, PlantColumn<float>& out) {
     PlantColumn<int32_t> level;
     PlantColumn<float> share, second, fourth;
     for (size_t i = 0; i < count; ++i) {
@@ -186,7 +187,7 @@ void PartRule::demand(const PackedPart& part, const PlantViews& views, const Fra
             fill[i] = projected.area_px2[i] / (projected.length_px[i] * line_d_px_);
     }
     gains_at(gains_, fill, count, gain);
-    side_gains_at(height_gains_, fill, projected.height, count, out.side_gain);
+    side_gains_at(height_gains_, fill, views.direction_y.data(), count, out.side_gain);
     multiply(projected.area_px2.data(), gain.data(), count, out.area_px2.data());
     if (is_points_) return;
     multiply(views.pixels_per_meter.data(), line_points_fill_m_, count, fill.data());
@@ -225,7 +226,7 @@ PartChoice choose_cloud(const PackedPart& part, std::span<const float> densities
         choice.mean_facing = 0.5f;
         choice.splat_px /= std::sqrt(choice.mean_facing);
     }
-    if (settings.projection == ProjectionMode::measured && part.point_count > 0)
+    if (settings.projection == ProjectionMode::measured && settings.weigh_by_facing && part.point_count > 0)
         choice.height_gain =
             height_gain_at(part, density * mean_projected_area_m2(part) / float(part.point_count));
     return choice;

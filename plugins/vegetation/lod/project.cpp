@@ -1,6 +1,5 @@
 #include "plugins/vegetation/lod/project.h"
 
-#include <algorithm>
 #include "runtime/core/vector_clones.h"
 
 namespace coppice {
@@ -57,22 +56,18 @@ float projected_length_px(const PackedPart& part, const PlantView& view, Project
 
 PartProjection project_part(const PackedPart& part, const PlantView& view, const FrameSettings& settings) {
     const float per_meter = view.pixels_per_meter;
-    const bool lines = part.kind == PackedPartKind::lines, mean = is_mean(part, settings);
     PartProjection projection{per_meter};
-    projection.area_px2 = mean ? mean_projected_area_m2(part) * (per_meter * per_meter)
-                               : projected_area_px2(part, view, settings.projection);
-    if (lines) projection.length_px = projected_length_px(part, view, settings.projection);
-    if (lines || mean) projection.height = view.direction_plant.y;
+    projection.area_px2 = is_mean(part, settings) ? mean_projected_area_m2(part) * (per_meter * per_meter)
+                                                  : projected_area_px2(part, view, settings.projection);
+    if (part.kind == PackedPartKind::lines)
+        projection.length_px = projected_length_px(part, view, settings.projection);
+    projection.height = view.direction_plant.y;
     return projection;
 }
 
 void project_parts(const PackedPart& part, const PlantViews& views, const FrameSettings& settings,
                    PartColumns& out) {
     const bool measured = settings.projection == ProjectionMode::measured;
-    if (is_mean(part, settings) || part.kind == PackedPartKind::lines)
-        std::copy(views.direction_y.begin(), views.direction_y.end(), out.height.begin());
-    else
-        std::fill_n(out.height.begin(), views.size(), k_mean_height);
     if (is_mean(part, settings))
         to_pixels(mean_projected_area_m2(part), true, views, out.area_px2.data());
     else if (measured)

@@ -38,14 +38,12 @@ inline float pixels_per_meter(float focal_px, float distance_m, float radius_m, 
     return focal_px / (r > r_min_m ? r : r_min_m) * scale;
 }
 
-inline constexpr float k_mean_height = 0.57735027f;  // the root of the mean of squares, over all directions
-
 // What a part would cover, whatever d'.
 struct PartProjection {
     float pixels_per_meter = 0.0f;
-    float area_px2 = 0.0f;         // A'_p; of points that which asks for them
-    float length_px = 0.0f;        // l'; only of lines
-    float height = k_mean_height;  // sine, of the viewer over the plant
+    float area_px2 = 0.0f;   // A'_p; of points that which asks for them
+    float length_px = 0.0f;  // l'; only of lines
+    float height = 0.0f;     // sine, of the plant over the viewer; its sign does not count
 };
 
 // A'_p in square pixels: what the part would cover if none of it hid another piece of it.
@@ -58,7 +56,7 @@ float projected_length_px(const PackedPart& part, const PlantView& view, Project
 PartProjection project_part(const PackedPart& part, const PlantView& view, const FrameSettings& settings);
 // The same of many plants of one model.
 struct PartColumns {
-    PlantColumn<float> area_px2, height;
+    PlantColumn<float> area_px2;
     PlantColumn<float> length_px;  // left alone for parts of points
 };
 void project_parts(const PackedPart& part, const PlantViews& views, const FrameSettings& settings,

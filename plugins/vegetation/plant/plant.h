@@ -138,6 +138,7 @@ inline HeightGain height_gain_at(const PackedPart& part, float fill) {
     return height_gain_at(gains, place);
 }
 // How many times as large points and lines are drawn where the plant is looked at from that height, in [-1, 1].
+// draw/raster.glsl has it as well.
 inline constexpr float k_least_seen_gain = 0.1f, k_largest_seen_gain = 1.6f;
 inline float seen_gain(HeightGain gain, float height) {
     const float seen = 1.0f + gain.second * legendre_2(height) + gain.fourth * legendre_4(height);

@@ -25,7 +25,7 @@ inline PlantView view_of(const Frustum& frustum, const mat3& rotation, vec3 cent
 
 struct Block {
     Column x, y, z, scale;                  // of the foot, camera-relative
-    Column turn_x, turn_y, turn_z, turn_w;  // PlantTurn
+    Column turn_x, turn_y, turn_z, turn_w;  // PlantTurn, as a unit quaternion
     std::array<uint32_t, k_block> index;    // in the run
     Column reach_m;                         // into the view, past the nearest plane; < 0: outside
     Column center_x, center_y, center_z;    // of the sphere that holds the plant

@@ -5,7 +5,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <string>
 #include <utility>
 #include <unistd.h>
@@ -26,29 +25,7 @@ class Images : public ::testing::Test {
         auto loaded = registry_->load("images");
         ASSERT_TRUE(loaded) << to_string(loaded.error());
     }
-    static void TearDownTestSuite() {
-#ifdef __SANITIZE_ADDRESS__
-        // Here and not at exit, and once all threads wait: OpenImageIO starts a pool when it decodes its first TIFF, and
-        // libraries beneath it (log4cplus, of OpenVDB) end theirs at exit without waiting for them. A thread that is
-        // starting or ending crashes the leak sanitizer's look at it.
-        for (int i = 0; i < 1000 && !other_threads_sleep(); ++i) ::usleep(1000);
-        __lsan_do_leak_check();
-#endif
-        delete registry_;
-    }
-#ifdef __SANITIZE_ADDRESS__
-    // By their state in /proc, the letter after the name in brackets.
-    static bool other_threads_sleep() {
-        for (const auto& task : std::filesystem::directory_iterator("/proc/self/task")) {
-            if (task.path().filename() == std::to_string(::getpid())) continue;
-            std::ifstream file(task.path() / "stat");
-            const std::string stat{std::istreambuf_iterator<char>(file), {}};
-            const size_t name_end = stat.rfind(')');
-            if (name_end == std::string::npos || stat.compare(name_end, 3, ") S") != 0) return false;
-        }
-        return true;
-    }
-#endif
+    static void TearDownTestSuite() { delete registry_; }
     void SetUp() override {
         images_ = registry_->find<ImagesInterface>(k_images_interface, k_images_version);
         ASSERT_NE(images_, nullptr);

@@ -110,6 +110,7 @@ class TreeBench {
         const double full_m2 = crown_area_m2(crown_->leaves());
         const uint32_t least = record_.leaf_count - uint32_t(crown_->collapses().size());
         Progress progress(record_.name + ": coverage of its levels", record_.leaf_count - least);
+        record_.dropped = measure_dropped(crown_->leaves(), coverage);
         double leaves = record_.leaf_count;
         while (leaves > double(least)) {
             leaves = std::max(leaves * k_level_ratio, double(least));
@@ -226,6 +227,12 @@ void add_figures(const std::string& plant, const FoliageRecord& record, std::vec
     add("LoDF storage", record.forest_words, "words/vert", 6.25);
     add("ours, storage", record.lifetimes_words, "words/vert", 6.25);
     add("coverage off by", 100.0 * coverage, "%", 2.0);
+    if (!record.dropped.empty()) {
+        const DroppedErrors& thinnest = record.dropped.back();
+        add("dropped to 1/20, w = 1", 100.0 * thinnest.whole, "%");
+        add("the same, golden section", 100.0 * thinnest.whole_golden, "%");
+        add("dropped to 1/20, tolerant", 100.0 * thinnest.tolerant, "%");
+    }
     add("area off by", 100.0 * area, "%", 1.0);
 }
 

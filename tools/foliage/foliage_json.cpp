@@ -4,7 +4,7 @@ namespace coppice {
 
 nlohmann::json foliage_json(const FoliageRecord& record) {
     static constexpr const char* k_names[k_structure_count] = {"vdf", "lodf", "lifetimes"};
-    nlohmann::json sweep = nlohmann::json::array(), levels = sweep, drawn = sweep;
+    nlohmann::json sweep = nlohmann::json::array(), levels = sweep, drawn = sweep, dropped = sweep;
     for (const SweepStep& step : record.sweep) {
         nlohmann::json row{{"leaves", step.leaf_count},
                            {"lifetimes_scan_ms", step.scan_ms},
@@ -24,8 +24,16 @@ nlohmann::json foliage_json(const FoliageRecord& record) {
                          {"vdf_change_ms", level.vdf_ms},
                          {"lifetimes_change_ms", level.ours_ms},
                          {"picture", level.picture_file}});
+    for (const DroppedErrors& level : record.dropped)
+        dropped.push_back({{"leaves", level.leaf_count},
+                           {"w_0", level.unscaled},
+                           {"w_half", level.half},
+                           {"w_1", level.whole},
+                           {"tolerant", level.tolerant},
+                           {"w_1_golden", level.whole_golden}});
     return {{"name", record.name},       {"leaves", record.leaf_count}, {"collapse_s", record.collapse_s},
-            {"sweep", std::move(sweep)}, {"levels", std::move(levels)}, {"drawn", std::move(drawn)}};
+            {"sweep", std::move(sweep)}, {"levels", std::move(levels)}, {"dropped", std::move(dropped)},
+            {"drawn", std::move(drawn)}};
 }
 
 }  // namespace coppice

@@ -88,6 +88,20 @@ std::string level_table(const FoliageRecord& record) {
            rows + "</table>\n";
 }
 
+std::string dropped_table(const FoliageRecord& record) {
+    std::string rows;
+    for (const DroppedErrors& level : record.dropped)
+        rows += fmt::format(
+            "<tr><td>{}</td><td>{:.1f}</td><td>{:.1f}</td><td>{:.1f}</td><td>{:.1f}</td><td>{:.1f}</td></"
+            "tr>\n",
+            level.leaf_count, 100.0 * level.unscaled, 100.0 * level.half, 100.0 * level.whole,
+            100.0 * level.tolerant, 100.0 * level.whole_golden);
+    return "<table class=\"numbers\"><tr><th>leaves</th><th>w = 0</th><th>w = 0.5</th><th>w = "
+           "1</th><th>tolerant of 2 %</th>"
+           "<th>w = 1, golden section</th></tr>\n" +
+           rows + "</table>\n";
+}
+
 std::string pictures(const FoliageRecord& record) {
     std::string text = "<div class=\"pictures\">\n";
     for (const DrawnLevelRecord& level : record.drawn)
@@ -118,7 +132,10 @@ std::string section(const FoliageRecord& record) {
            sweep_plot(record, "Extraction and copy", "ms", change) +
            sweep_plot(record, "Sent", "bytes", bytes) + "</div>\n" + sweep_table(record) +
            "<p>Four levels, every triangle; milliseconds a frame with the leaves alone.</p>\n" +
-           pictures(record) + "<p>Against the full crown, from 16 directions:</p>\n" + level_table(record);
+           pictures(record) + "<p>Against the full crown, from 16 directions:</p>\n" + level_table(record) +
+           "<p>Leaves dropped and the rest resized, in place of joined; coverage off by at most, %. In "
+           "progressive order along a curve, the last column in golden-section order:</p>\n" +
+           dropped_table(record);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 #include <nlohmann/json.hpp>
+#include "tools/foliage/dropped_crown.h"
 #include "tools/foliage/sweep_levels.h"
 
 namespace coppice {
@@ -31,6 +32,7 @@ struct FoliageRecord {
     std::vector<SweepStep> sweep;
     SweepSum fine_vdf, fine_lodf;  // of a sweep in ten times as many steps
     std::vector<CrownLevelRecord> levels;
+    std::vector<DroppedErrors> dropped;  // drop and resize, in place of joining
     std::vector<DrawnLevelRecord> drawn;
 };
 

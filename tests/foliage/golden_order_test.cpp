@@ -47,9 +47,10 @@ double clumping(const std::vector<vec3>& places, std::span<const uint32_t> dropp
 
 TEST(GoldenOrder, EveryLeafGoesOnce) {
     const std::vector<vec3> places = made_places(k_count);
-    for (DropHeight height : {DropHeight::sawtooth, DropHeight::sine}) {
-        std::vector<uint32_t> order = golden_drop_order(places, {.height = height});
-        EXPECT_EQ(order, golden_drop_order(places, {.height = height}));
+    for (const GoldenOrderSettings& settings :
+         {GoldenOrderSettings{}, {.height = DropHeight::sine}, {.places = DropPlaces::cylinder}}) {
+        std::vector<uint32_t> order = golden_drop_order(places, settings);
+        EXPECT_EQ(order, golden_drop_order(places, settings));
         std::sort(order.begin(), order.end());
         for (uint32_t i = 0; i < k_count; ++i) ASSERT_EQ(order[i], i);
     }
@@ -72,11 +73,11 @@ TEST(GoldenOrder, ThinsMoreEvenlyThanChance) {
             << dropped << " dropped";
 }
 
-// It asks for as many leaves of every place, however many are there: what stays in the end is where leaves were dense. Order
-// along a curve takes from each place its share.
+// As printed it asks for as many leaves of every place, however many are there: what stays in the end is where leaves were
+// dense. Order along a curve takes from each place its share.
 TEST(GoldenOrder, AProgressiveOrderKeepsWhereLeavesAreDense) {
     const std::vector<vec3> places = made_places(k_count);
-    const std::vector<uint32_t> golden = golden_drop_order(places, {});
+    const std::vector<uint32_t> golden = golden_drop_order(places, {.places = DropPlaces::cylinder});
     const std::vector<uint32_t> curve = order_along_curve(places);
     std::vector<uint32_t> progressive = make_prefix_order(k_count, PrefixOrder::progressive, 1);
     for (uint32_t& place : progressive) place = curve[place];
@@ -84,6 +85,25 @@ TEST(GoldenOrder, AProgressiveOrderKeepsWhereLeavesAreDense) {
         EXPECT_GT(clumping(places, std::span(golden).first(dropped)), 1.0) << dropped << " dropped";
         EXPECT_LT(clumping(places, std::span(progressive).first(dropped)), 0.7) << dropped << " dropped";
     }
+}
+
+// The printed places fill a cylinder: of a ball they take the outside, and what is left is its core.
+TEST(GoldenOrder, ARoundCrownStaysRound) {
+    std::vector<vec3> ball;
+    Random random(8);
+    while (ball.size() < k_count) {
+        const vec3 p(random.next_in(-1, 1), random.next_in(-1, 1), random.next_in(-1, 1));
+        if (glm::length(p) < 1.0f) ball.push_back(p);
+    }
+    auto mean_radius_of_rest = [&](DropPlaces places) {
+        const std::vector<uint32_t> order = golden_drop_order(ball, {.places = places});
+        double sum = 0.0;
+        for (uint32_t leaf : std::span(order).last(k_count / 10)) sum += double(glm::length(ball[leaf]));
+        return sum / (k_count / 10);
+    };
+    // Of a ball of radius 1 the mean is 3 / 4.
+    EXPECT_NEAR(mean_radius_of_rest(DropPlaces::crown), 0.75, 0.05);
+    EXPECT_LT(mean_radius_of_rest(DropPlaces::cylinder), 0.65);
 }
 
 TEST(GoldenOrder, LeavesThatGoOneAfterTheOtherAreNotNear) {
@@ -99,7 +119,7 @@ TEST(GoldenOrder, HostilePlacesGetAnOrder) {
     EXPECT_TRUE(golden_drop_order({}, {}).empty());
     EXPECT_EQ(golden_drop_order(std::vector<vec3>{vec3(1, 2, 3)}, {}), std::vector<uint32_t>{0});
     const std::vector<vec3> same(100, vec3(1e5f));
-    EXPECT_EQ(golden_drop_order(same, {DropHeight::sine, 0, 0}).size(), 100u);
+    EXPECT_EQ(golden_drop_order(same, {DropPlaces::crown, DropHeight::sine, 0, 0}).size(), 100u);
 }
 
 }  // namespace

@@ -231,6 +231,7 @@ void add_figures(const std::string& plant, const FoliageRecord& record, std::vec
         const DroppedErrors& thinnest = record.dropped.back();
         add("dropped to 1/20, w = 1", 100.0 * thinnest.whole, "%");
         add("the same, golden section", 100.0 * thinnest.whole_golden, "%");
+        add("the same, as printed", 100.0 * thinnest.whole_printed, "%");
         add("dropped to 1/20, tolerant", 100.0 * thinnest.tolerant, "%");
     }
     add("area off by", 100.0 * area, "%", 1.0);

@@ -55,6 +55,7 @@ std::vector<DroppedErrors> measure_dropped(std::span<const Leaf> crown, const Cr
     std::vector<vec3> places;
     for (const Leaf& leaf : crown) places.push_back(middle_of(leaf));
     const std::vector<uint32_t> golden = golden_drop_order(places, {}),
+                                printed = golden_drop_order(places, {.places = DropPlaces::cylinder}),
                                 progressive = progressive_drop_order(places);
     const float depth = optical_depth(crown);
     std::vector<DroppedErrors> levels;
@@ -70,6 +71,7 @@ std::vector<DroppedErrors> measure_dropped(std::span<const Leaf> crown, const Cr
         errors.whole = error(progressive, whole);
         errors.tolerant = error(progressive, std::sqrt(tolerant_area_growth(share, depth, k_tolerance)));
         errors.whole_golden = error(golden, whole);
+        errors.whole_printed = error(printed, whole);
         levels.push_back(errors);
     }
     return levels;

@@ -20,7 +20,8 @@ struct DroppedErrors {
     // In progressive order along a curve through the crown.
     double unscaled = 0.0, half = 0.0, whole = 0.0;  // w = 0, 0.5, 1
     double tolerant = 0.0;                           // of a fiftieth of the coverage
-    double whole_golden = 0.0;                       // w = 1, in golden-section order
+    // w = 1, in golden-section order: as ours, and with its places in a cylinder, as printed.
+    double whole_golden = 0.0, whole_printed = 0.0;
 };
 
 // At 1 / 2, 1 / 4, 1 / 8 and 1 / 20 of the leaves: CrownCoverage::worst_error of each.

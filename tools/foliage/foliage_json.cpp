@@ -30,7 +30,8 @@ nlohmann::json foliage_json(const FoliageRecord& record) {
                            {"w_half", level.half},
                            {"w_1", level.whole},
                            {"tolerant", level.tolerant},
-                           {"w_1_golden", level.whole_golden}});
+                           {"w_1_golden", level.whole_golden},
+                           {"w_1_golden_printed", level.whole_printed}});
     return {{"name", record.name},       {"leaves", record.leaf_count}, {"collapse_s", record.collapse_s},
             {"sweep", std::move(sweep)}, {"levels", std::move(levels)}, {"dropped", std::move(dropped)},
             {"drawn", std::move(drawn)}};

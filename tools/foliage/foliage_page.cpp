@@ -95,10 +95,10 @@ std::string dropped_table(const FoliageRecord& record) {
             "<tr><td>{}</td><td>{:.1f}</td><td>{:.1f}</td><td>{:.1f}</td><td>{:.1f}</td><td>{:.1f}</td></"
             "tr>\n",
             level.leaf_count, 100.0 * level.unscaled, 100.0 * level.half, 100.0 * level.whole,
-            100.0 * level.tolerant, 100.0 * level.whole_golden);
+            100.0 * level.tolerant, 100.0 * level.whole_golden, 100.0 * level.whole_printed);
     return "<table class=\"numbers\"><tr><th>leaves</th><th>w = 0</th><th>w = 0.5</th><th>w = "
            "1</th><th>tolerant of 2 %</th>"
-           "<th>w = 1, golden section</th></tr>\n" +
+           "<th>w = 1, golden section</th><th>the same as printed</th></tr>\n" +
            rows + "</table>\n";
 }
 
@@ -134,7 +134,7 @@ std::string section(const FoliageRecord& record) {
            "<p>Four levels, every triangle; milliseconds a frame with the leaves alone.</p>\n" +
            pictures(record) + "<p>Against the full crown, from 16 directions:</p>\n" + level_table(record) +
            "<p>Leaves dropped and the rest resized, in place of joined; coverage off by at most, %. In "
-           "progressive order along a curve, the last column in golden-section order:</p>\n" +
+           "progressive order along a curve, the last two columns in golden-section order:</p>\n" +
            dropped_table(record);
 }
 

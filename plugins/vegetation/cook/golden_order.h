@@ -1,7 +1,7 @@
 // The order in which a crown's leaves are dropped: the next is the one nearest to a place that wanders by the golden section
-// about the crown's axis while it rises and falls, so that leaves that go one after the other are never near, and no spot
-// thins before the rest.
-// Source: Digital Design of Nature, 10.4; ERRATA 11 for the positions.
+// about the crown's axis while it rises and falls, so that leaves that go one after the other are never near.
+// Source: Digital Design of Nature, 10.4; ERRATA 11 for the positions. Deviates: heights and radii go through those that the
+// leaves have, because places that fill a cylinder take the outside of a round crown first.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -15,7 +15,13 @@ enum class DropHeight : uint8_t {
     sine,      // up and down; as printed, it is rather near the ends than in the middle
 };
 
+enum class DropPlaces : uint8_t {
+    cylinder,  // about the crown, as printed
+    crown,  // a height is that below which so many of the leaves are, a radius likewise of the leaves at that height
+};
+
 struct GoldenOrderSettings {
+    DropPlaces places = DropPlaces::crown;
     DropHeight height = DropHeight::sawtooth;
     // p_h: after so many places radii begin anew; >= 1. After 34, 55 ... places the angle is nearly where it was, and places
     // would fall on each other; 33 is far from that.

@@ -92,8 +92,8 @@ std::string dropped_table(const FoliageRecord& record) {
     std::string rows;
     for (const DroppedErrors& level : record.dropped)
         rows += fmt::format(
-            "<tr><td>{}</td><td>{:.1f}</td><td>{:.1f}</td><td>{:.1f}</td><td>{:.1f}</td><td>{:.1f}</td></"
-            "tr>\n",
+            "<tr><td>{}</td><td>{:.1f}</td><td>{:.1f}</td><td>{:.1f}</td><td>{:.1f}</td><td>{:.1f}</td>"
+            "<td>{:.1f}</td></tr>\n",
             level.leaf_count, 100.0 * level.unscaled, 100.0 * level.half, 100.0 * level.whole,
             100.0 * level.tolerant, 100.0 * level.whole_golden, 100.0 * level.whole_printed);
     return "<table class=\"numbers\"><tr><th>leaves</th><th>w = 0</th><th>w = 0.5</th><th>w = "

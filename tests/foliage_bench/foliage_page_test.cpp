@@ -19,6 +19,7 @@ FoliageRecord made_record() {
     }
     record.levels = {{1500, 0.0123, 0.987}};
     record.dropped = {{1500, 0.31, 0.21, 0.11, 0.07, 0.05, 0.8}};
+    record.grove_file = "ash-grove.png";
     record.drawn = {{2250, 4.5, 1.625, 0.0001, "ash-2250.png"}};
     return record;
 }
@@ -26,8 +27,8 @@ FoliageRecord made_record() {
 TEST(FoliagePage, ShowsPlantLevelsAndPictures) {
     const std::string page = foliage_page({made_record()}, "llvmpipe", "machine", "coppice bench foliage");
     for (const char* text :
-         {"Ash &lt;&amp; tree&gt;", "VDF", "LoDF", "leaf lifetimes", "3000 leaves", "ash-2250.png", "4.5 ms",
-          "<td>1.23</td><td>-1.300</td>", "<td>777</td>",
+         {"Ash &lt;&amp; tree&gt;", "VDF", "LoDF", "leaf lifetimes", "3000 leaves", "ash-2250.png",
+          "ash-grove.png", "4.5 ms", "<td>1.23</td><td>-1.300</td>", "<td>777</td>",
           "<td>31.0</td><td>21.0</td><td>11.0</td><td>7.0</td><td>5.0</td><td>80.0</td>", "llvmpipe"})
         EXPECT_NE(page.find(text), std::string::npos) << text;
     EXPECT_EQ(page.find("<& tree>"), std::string::npos) << "names are text";

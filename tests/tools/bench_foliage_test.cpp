@@ -35,6 +35,7 @@ TEST(BenchFoliage, LeavesAPageFourPicturesAndFigures) {
         const std::string picture = plant["drawn"][i]["picture"];
         EXPECT_GT(files::file_size(folder + "/out/" + picture), 100u);
     }
+    EXPECT_GT(files::file_size(folder + "/out/" + plant.at("grove").get<std::string>()), 100u);
     EXPECT_GT(files::file_size(folder + "/out/index.html"), 1000u);
     const json& figures = made.at("figures");
     auto value_of = [&](const std::string& name) {

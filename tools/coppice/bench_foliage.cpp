@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include "plugins/vegetation/cook/collapse_leaves.h"
 #include "plugins/vegetation/cook/cook_file.h"
+#include "plugins/vegetation/cull/frustum.h"
 #include "plugins/vegetation/eco/make_tiles.h"
 #include "plugins/vegetation/eco/plant_scene.h"
 #include "plugins/vegetation/lod/leaf_forest.h"
@@ -12,6 +13,7 @@
 #include "runtime/core/progress.h"
 #include "runtime/gpu/buffer.h"
 #include "tools/accuracy/metrics.h"
+#include "tools/accuracy/substitute_models.h"
 #include "tools/coppice/figure.h"
 #include "tools/coppice/machine.h"
 #include "tools/coppice/method_drawer.h"
@@ -32,6 +34,8 @@ constexpr uint32_t k_collapse_rounds = 3, k_fine_steps = 1000, k_fine_rounds = 1
 constexpr double k_level_ratio = 0.93;                // of leaves, from one level looked at to the next
 constexpr double k_shown[] = {1.0, 0.75, 0.5, 0.25};  // Fig. 12
 constexpr uint32_t k_picture_frames = 16;
+constexpr double k_grove_levels[] = {1.0, 0.5, 0.25, 0.125, 1.0 / k_coarsest};
+constexpr double k_leaf_px = 1.5;
 
 class TreeBench {
   public:
@@ -44,6 +48,7 @@ class TreeBench {
         COPPICE_CHECK(sweep());
         compare_levels();
         COPPICE_CHECK(draw_levels());
+        COPPICE_CHECK(draw_grove());
         return std::move(record_);
     }
     const std::string& device() const { return host_->device->name; }
@@ -170,6 +175,34 @@ class TreeBench {
             record_.drawn.push_back(drawn);
         }
         return {};
+    }
+
+    // Fig. 12, below: a grove, each plant by the coarsest level whose leaves take no more than k_leaf_px.
+    Status draw_grove() {
+        const ImagesInterface* images = host_->find_images();
+        if (!images) return {};
+        const OpennessGrid openness(description_.parts, std::vector<bool>(description_.parts.size(), false));
+        SubstituteLadder ladder;
+        for (double share : k_grove_levels) {
+            const std::vector<Leaf> leaves =
+                crown_->leaves_at(crown_->level_of(uint32_t(share * double(record_.leaf_count))));
+            COPPICE_TRY(Plant plant, make_level_plant(host_->plants[0], leaves, openness, true));
+            const double leaf_m =
+                std::sqrt(crown_area_m2(leaves) / double(std::max<size_t>(leaves.size(), 1)));
+            ladder.push_back({std::move(plant), ladder.empty() ? 0.0f : float(leaf_m)});
+        }
+        const MethodScene grove{host_->scene, host_->plants};
+        SubstituteScenes scenes(grove, {std::move(ladder)});
+        const Camera camera = host_->scene.camera_path.front().camera;
+        const float focal_px = make_frustum(camera, host_->width, host_->height).focal_px;
+        const SubstituteScenes::Choice choice = scenes.choose(camera, focal_px, k_leaf_px);
+        FrameSettings settings;
+        settings.level_of_detail = false;
+        MethodDrawer drawer(*host_);
+        COPPICE_TRY(const FloatPicture picture,
+                    drawer.picture({choice.scene, settings, choice.revision}, camera, 1));
+        record_.grove_file = stem() + "-grove.png";
+        return images->write(out_ + "/" + record_.grove_file, encode_srgb(picture));
     }
 
     const SweepStep& nearest_step(uint32_t leaf_count) const {

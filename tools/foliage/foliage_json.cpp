@@ -32,9 +32,9 @@ nlohmann::json foliage_json(const FoliageRecord& record) {
                            {"tolerant", level.tolerant},
                            {"w_1_golden", level.whole_golden},
                            {"w_1_golden_printed", level.whole_printed}});
-    return {{"name", record.name},       {"leaves", record.leaf_count}, {"collapse_s", record.collapse_s},
-            {"sweep", std::move(sweep)}, {"levels", std::move(levels)}, {"dropped", std::move(dropped)},
-            {"drawn", std::move(drawn)}};
+    return {{"name", record.name},           {"leaves", record.leaf_count}, {"collapse_s", record.collapse_s},
+            {"grove", record.grove_file},    {"sweep", std::move(sweep)},   {"levels", std::move(levels)},
+            {"dropped", std::move(dropped)}, {"drawn", std::move(drawn)}};
 }
 
 }  // namespace coppice

@@ -109,6 +109,11 @@ std::string pictures(const FoliageRecord& record) {
             "<figure><img src=\"{0}\" alt=\"{1} with {2} leaves\"><figcaption>{2} leaves: {3:.1f} "
             "ms</figcaption></figure>\n",
             level.picture_file, escape_html(record.name), level.leaf_count, level.leaves_ms);
+    if (!record.grove_file.empty())
+        text += fmt::format(
+            "<figure><img src=\"{0}\" alt=\"{1}, a grove\"><figcaption>levels by "
+            "distance</figcaption></figure>\n",
+            record.grove_file, escape_html(record.name));
     return text + "</div>\n";
 }
 

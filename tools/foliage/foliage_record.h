@@ -34,6 +34,7 @@ struct FoliageRecord {
     std::vector<CrownLevelRecord> levels;
     std::vector<DroppedErrors> dropped;  // drop and resize, in place of joining
     std::vector<DrawnLevelRecord> drawn;
+    std::string grove_file;  // plants at levels by their distance; empty: none
 };
 
 nlohmann::json foliage_json(const FoliageRecord& record);

@@ -9,6 +9,7 @@
 #include "tools/coppice/bench_accuracy.h"
 #include "tools/coppice/bench_cook.h"
 #include "tools/coppice/bench_ecs.h"
+#include "tools/coppice/bench_foliage.h"
 #include "tools/coppice/bench_raster.h"
 #include "tools/coppice/bench_scale.h"
 #include "tools/coppice/bench_scenes.h"
@@ -34,6 +35,7 @@ Examples:
   coppice bench stand --strict        exit code 1 where a figure does not reach what it is to reach
   coppice bench accuracy --scene woodland --out out/accuracy-woodland
       open out/accuracy-woodland/index.html; the first run traces the references, which takes minutes
+  coppice bench foliage --scene tree.glb --out out/foliage-tree
   coppice bench accuracy --methods 'measured;billboards' --views my_views.json)";
 }
 
@@ -83,13 +85,18 @@ const std::vector<Bench>& benches() {
          bench_cook},
         {"ecs", "a million entities in tiles of 1,000: create, destroy, iterate, find",
          [](const BenchSettings&) { return bench_ecs(); }},
+        {"foliage",
+         "levels of crowns: extraction, bytes, coverage, storage, for VDF, LoDF and lifetimes; a page",
+         bench_foliage},
         {"raster", "points, lines and triangles a second of the rasteriser alone",
          [](const BenchSettings& settings) { return bench_raster(settings.device); }},
         {"frame", "what the CPU does for a frame of 100,000 plants: cull, levels, budget, work list",
          bench_frame},
         {"pines", "640 pines at 795x700, also with every triangle", bench_pines},
-        {"scale", "one view and budget over 10^7 to 10^12 triangles; a page. Makes 250 MiB of scenes", bench_scale},
-        {"scenes", "pines, palms, landscape and sunflowers at 795x700: rate, primitives, memory", bench_table},
+        {"scale", "one view and budget over 10^7 to 10^12 triangles; a page. Makes 250 MiB of scenes",
+         bench_scale},
+        {"scenes", "pines, palms, landscape and sunflowers at 795x700: rate, primitives, memory",
+         bench_table},
         {"stand", "640, 5,000 and 50,000 trees, against other programs' times", bench_stand},
     };
     return k_benches;
@@ -106,18 +113,20 @@ void add_bench(CLI::App& app, Command& chosen) {
         ->default_val("content");
     bench->add_option("--cache", command->settings.cache_dir,
                       "Folder of cooked plants. Default: ~/.cache/coppice");
-    bench
-        ->add_option("--scene", command->settings.scene,
-                     "accuracy: a scene of the content, or *.eco.json, or a plant")
-        ->capture_default_str();
+    bench->add_option(
+        "--scene", command->settings.scene,
+        "accuracy: a scene of the content, or *.eco.json, or a plant; default pines. foliage: a plant; "
+        "default three trees");
     bench->add_option(
         "--views", command->settings.views,
         "accuracy: camera path whose keys are the views. Default: SCENE_views.json, else five of its flight");
     bench->add_option("--methods", command->settings.methods,
                       "accuracy: names or parts of names, with ; between. Default: all");
-    bench->add_option("--size", command->settings.size, "accuracy: of the pictures")->capture_default_str();
-    bench->add_option("--out", command->settings.out,
-                      "accuracy, scale: folder for the page. Default: out/accuracy-SCENE, out/scale");
+    bench->add_option("--size", command->settings.size, "accuracy, foliage: of the pictures")
+        ->capture_default_str();
+    bench->add_option(
+        "--out", command->settings.out,
+        "accuracy, foliage, scale: folder for the page. Default: out/accuracy-SCENE, out/foliage, out/scale");
     bench->add_flag("--strict", command->strict, "Exit with 1 where a figure does not hold");
     bench->callback([command, &chosen] { chosen = [command] { return run(*command); }; });
 }

@@ -13,8 +13,8 @@ struct BenchSettings {
     std::string device;     // index or part of a name
     std::string content;    // folder of scenes and species
     std::string cache_dir;  // of cooked plants and references
+    std::string scene;  // accuracy: of content/scenes, or a file; empty: pines. foliage: a plant; empty: three trees
     // Of `accuracy` alone.
-    std::string scene = "pines";   // of content/scenes, or a file
     std::string views;             // camera path whose keys are the views; empty: SCENE_views.json
     std::string methods;           // names or parts of them, with ; between; empty: all
     std::string size = "795x700";  // of the pictures

@@ -405,6 +405,7 @@ class AccuracyBench {
 
 Result<nlohmann::json> bench_accuracy(const BenchSettings& asked) {
     BenchSettings settings = asked;
+    if (settings.scene.empty()) settings.scene = "pines";
     if (settings.out.empty()) settings.out = "out/accuracy-" + scene_stem(settings.scene);
     if (settings.cache_dir.empty()) settings.cache_dir = default_cache_dir();
     COPPICE_TRY(AccuracyRecord record, AccuracyBench(settings).run());

@@ -10,6 +10,7 @@
 #include "plugins/vegetation/cook/clean_mesh.h"
 #include "plugins/vegetation/cook/closed_share.h"
 #include "plugins/vegetation/cook/cut_part.h"
+#include "plugins/vegetation/cook/group_triangles.h"
 #include "plugins/vegetation/cook/importance.h"
 #include "plugins/vegetation/cook/measure_coverage.h"
 #include "plugins/vegetation/cook/measure_projection.h"
@@ -381,6 +382,7 @@ Result<std::vector<std::byte>> cook_plant(const PlantDescription& plant, const C
         packed[i] = {};
     }
     add_cells(cells, blocks);
+    group_triangles(blocks);
     return pack_plant(blocks);
 }
 

@@ -68,7 +68,7 @@ std::string inspect_plant(const Plant& plant) {
         text += fmt::format("{}: {} leaves, joined down to {}; ", plant.parts[crown.part].name, crown.full_count,
                             crown.least_count);
         text += sizes.from_px2 < sizes.to_px2
-                    ? fmt::format("drawn where one covers {:.1f} to {:.1f} d'^2 in the mean, smaller ones as points\n",
+                    ? fmt::format("drawn where one covers {:.1f} to {:.1f} d'^2 in the mean; smaller and larger ones as points or triangles\n",
                                   sizes.from_px2, sizes.to_px2)
                     : "never drawn: points or triangles are better\n";
     }

@@ -7,7 +7,7 @@
 //                                     them down, in parallel
 //   draw    write_work_list draw/     the jobs' lists, one behind the other, into the mapped buffers
 //   report  count           report/   what was drawn
-//   passes  stream in, clear, triangles, big triangles, lines, points ..., resolve: draw/rasteriser.cpp
+//   passes  stream in, clear, triangles, big triangles, leaves, lines, points ..., resolve: draw/rasteriser.cpp
 #include "plugins/vegetation/vegetation.h"
 
 #include <chrono>
@@ -33,7 +33,7 @@ double now_ms() {
 }
 
 PrimitiveCounts counts_of(const FrameReport& report) {
-    return {report.triangles, report.lines, report.points};
+    return {report.triangles, report.lines, report.points, report.leaves};
 }
 
 class VegetationSystems final : public Vegetation {
@@ -441,13 +441,15 @@ class VegetationSystems final : public Vegetation {
             report_.cloud_plants += tile.plant_count;
             report_.full_triangles += tile.triangle_count;
         }
-        report_.triangles = report_.lines = report_.points = 0;
+        report_.triangles = report_.lines = report_.points = report_.leaves = 0;
         for (size_t i = 1; i < tile_list_.runs().size() + 2; ++i) {
             report_.triangles += work_.part(i).triangles;
             report_.lines += work_.part(i).lines;
             report_.points += work_.part(i).points;
+            report_.leaves += work_.part(i).leaves;
         }
-        report_.vertices = report_.points + 2 * report_.lines + 3 * report_.triangles;
+        report_.vertices =
+            report_.points + 2 * report_.lines + 3 * report_.triangles + 4 * report_.leaves;
         slot_counts_[slot_] = {counts_of(report_), true};
         report_.sample_distance_px = drawn_.sample_distance_px;
         report_.vertex_budget = budget_;

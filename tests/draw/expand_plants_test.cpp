@@ -146,7 +146,9 @@ TEST_F(ExpandCells, FarAwayCellsGoOnWhereThePartsPointsEnd) {
     uint64_t before = 0;
     bool points_of_cells = false, triangles = false;
     for (float d = 2.0f; d > 0.02f; d *= 0.97f) {
-        WorkList work = expand(*geometry_, distance_m, coarse(d));
+        FrameSettings settings = coarse(d);
+        settings.foliage = FoliageMode::points;
+        WorkList work = expand(*geometry_, distance_m, settings);
         const uint64_t vertices = work.part(0).points + 3 * work.part(0).triangles;
         if (before > 0 && work.part(0).triangles < 40000u) {
             ASSERT_NEAR(double(vertices) / double(before), 1.0 / (0.97 * 0.97), 0.02) << d;

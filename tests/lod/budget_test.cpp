@@ -390,6 +390,43 @@ TEST(SampleDistance, ChoosePartDrawsTheBudgetAlsoAfterACameraCut) {
 }
 
 // Clouds of tiles, whose counts follow no power of d'.
+// Leaves of two, three and ten triangles, and where leaves end among points, in the blend and past it.
+TEST(SampleDistance, KnowsWhatLeavesDraw) {
+    for (FoliageMode mode : {FoliageMode::leaves, FoliageMode::automatic})
+        for (bool blend : {true, false})
+            for (uint32_t triangles : {300u, 600u, 900u, 3000u, 13000u}) {
+                PackedPart part{};
+                part.importance = 1.0f;
+                part.triangle_count = triangles;
+                part.point_count = 2 * triangles;
+                part.area_m2 = 2.0f;
+                part.projected_area_m2.m = {1.0f, 1.0f, 1.0f, 0.0f, 0.0f, 0.0f};
+                part.coverage_gain.fill(1.0f);
+                FrameSettings settings;
+                settings.foliage = mode;
+                settings.blend = blend;
+                const LeafLevels levels{300, 16};
+                const PlantView view{vec3(0, 0, -1), 40.0f};
+                BudgetHistogram histogram;
+                const PartRule at_1px(part, settings, levels);
+                add_part(histogram, part, at_1px, at_1px.demand(project_part(part, view, settings)), settings);
+                for (float d = 0.14f; d < 20.0f; d *= 1.07f) {
+                    settings.sample_distance_px = d;
+                    double drawn = 0.0;
+                    for (int i = 0; i < 64; ++i) {
+                        const PartChoice choice =
+                            choose_part(part, view, settings, std::fmod(0.618034f * float(i), 1.0f), levels);
+                        drawn += (double(choice.points) - choice.skipped_points + 3.0 * choice.triangles +
+                                  4.0 * choice.leaves) / 64.0;
+                    }
+                    // Rounding, and 0.4 % of a step of d'^2; a jump is on either side of its bin.
+                    const double finer = vertices_at(histogram, d * 1.003f), coarser = vertices_at(histogram, d * 0.997f);
+                    EXPECT_GE(drawn, std::min(finer, coarser) * 0.985 - 4.0) << triangles << " " << d;
+                    EXPECT_LE(drawn, std::max(finer, coarser) * 1.015 + 4.0) << triangles << " " << d;
+                }
+            }
+}
+
 TEST(SampleDistance, ChooseCloudDrawsTheBudget) {
     Random random(10);
     struct Cloud {

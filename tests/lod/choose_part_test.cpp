@@ -101,6 +101,61 @@ TEST(ChoosePoints, WithoutBlendingSwitchesAtOnce) {
 }
 
 // What is seen of a point from the side it shows by |n . v|; which points are drawn, a tile's cloud must know for all sides.
+// 600 triangles, two a leaf.
+TEST(ChooseLeaves, StandBetweenTrianglesAndPointsWithAsManyVertices) {
+    const PackedPart part = leaf_part(600);
+    FrameSettings settings;
+    settings.splat_factor = 1.0f;
+    settings.weigh_by_facing = false;
+    settings.foliage = FoliageMode::leaves;
+    const PartRule rule(part, settings, {300, 16});
+    auto choice_at = [&](float p, float chance) {
+        return rule.expand(rule.choose({0.0f, p, 0.0f, 0.0f, 1.0f}, chance), 1.0f);
+    };
+    for (float chance : {0.0f, 0.5f, 0.998f})
+        for (float p : {90.0f, 400.0f, 1100.0f, 1199.0f}) {
+            const PartChoice choice = choice_at(p, chance);
+            EXPECT_EQ(choice.triangles + choice.points, 0u) << p;
+            EXPECT_NEAR(4.0 * double(choice.leaves), double(p), 4.0) << p;
+        }
+    EXPECT_EQ(choice_at(1500.0f, 0.0f).leaves, 300u) << "all of them until triangles have no more vertices";
+    EXPECT_EQ(choice_at(1799.0f, 0.0f).leaves, 300u);
+    EXPECT_EQ(choice_at(1800.0f, 0.0f).triangles, 600u);
+    EXPECT_EQ(choice_at(1800.0f, 0.0f).leaves, 0u);
+    EXPECT_EQ(choice_at(64.0f * 0.79f, 0.998f).points, 51u) << "below the last level";
+    // Each plant changes to points at a p of its own.
+    uint32_t as_leaves = 0;
+    for (int i = 0; i < 1024; ++i) as_leaves += choice_at(64.0f, (float(i) + 0.5f) / 1024.0f).leaves > 0;
+    EXPECT_NEAR(as_leaves, 512, 80);
+}
+
+TEST(ChooseLeaves, AutomaticDrawsThemWhereTheyWereMeasuredToWin) {
+    PackedPart part = leaf_part(3000);  // ten triangles a leaf
+    FrameSettings settings;
+    settings.splat_factor = 1.0f;
+    settings.weigh_by_facing = false;
+    const LeafLevels levels{300, 16};
+    const LeafRange range = automatic_leaf_range(part, 300, 16);
+    EXPECT_LT(range.from, range.to);
+    auto leaves_at = [&](float p) {
+        return PartRule(part, settings, levels).choose({0.0f, p, 0.0f, 0.0f, 1.0f}, 0.5f / 256.0f).form ==
+               PartRule::Form::leaves;
+    };
+    EXPECT_TRUE(leaves_at(1.01f * range.from));
+    EXPECT_TRUE(leaves_at(0.99f * range.to));
+    EXPECT_FALSE(leaves_at(0.79f * range.from));
+    EXPECT_FALSE(leaves_at(1.01f * range.to));
+    settings.foliage = FoliageMode::points;
+    EXPECT_FALSE(leaves_at(1.2f * range.from));
+    settings.foliage = FoliageMode::leaves;
+    EXPECT_TRUE(leaves_at(0.5f * range.from));
+    EXPECT_TRUE(leaves_at(2.0f * range.to));
+    settings.level_of_detail = false;
+    EXPECT_FALSE(leaves_at(1.2f * range.from)) << "all triangles";
+    const LeafRange none = automatic_leaf_range(leaf_part(400), 300, 16);
+    EXPECT_LE(none.to, none.from) << "as many vertices as the triangles";
+}
+
 TEST(ChoosePart, PointsAreThoseOfAllSides) {
     PackedPart card = leaf_part(1000);
     card.projected_area_m2.m = {4.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};  // 2 m2 that face x
@@ -264,7 +319,8 @@ TEST(ChooseParts, ManyAreChosenAsOneIs) {
                         chances[i] = random.next_unit();
                     }
                     const PlantViews views{x, y, z, per_meter};
-                    const PartRule rule(*part, settings);
+                    settings.foliage = plain ? FoliageMode::leaves : FoliageMode::automatic;
+                    const PartRule rule(*part, settings, {16, 2});
                     PartDemands demands;
                     PartChoices choices;
                     rule.demand(*part, views, settings, demands);

@@ -72,6 +72,14 @@ PlantBlocks small_plant_in_cells() {
     return blocks;
 }
 
+// Four leaves and the two collapses that leave two: in one band, the first four of its six are removed.
+PlantBlocks small_plant_with_leaves() {
+    PlantBlocks blocks = small_plant_in_cells();
+    blocks.crowns.push_back({0, 0, 4, 2});
+    for (uint32_t birth : {0u, 0u, 0u, 1u, 0u, 2u}) blocks.leaves.push_back({{}, 5, birth});
+    return blocks;
+}
+
 TEST(LoadPlant, GivesBackWhatWasPacked) {
     PlantBlocks blocks = small_plant();
     auto plant = load(pack_plant(blocks));
@@ -110,7 +118,7 @@ TEST(LoadPlant, ContentHashFollowsEveryBlock) {
 }
 
 TEST(LoadPlant, RefusesEveryTruncation) {
-    std::vector<std::byte> bytes = pack_plant(small_plant_in_cells());
+    std::vector<std::byte> bytes = pack_plant(small_plant_with_leaves());
     for (size_t length = 0; length < bytes.size(); ++length) {
         auto plant = load(std::vector<std::byte>(bytes.begin(), bytes.begin() + long(length)));
         ASSERT_FALSE(plant) << length;
@@ -121,7 +129,7 @@ TEST(LoadPlant, RefusesEveryTruncation) {
 }
 
 TEST(LoadPlant, RefusesEveryFlippedBit) {
-    std::vector<std::byte> bytes = pack_plant(small_plant_in_cells());
+    std::vector<std::byte> bytes = pack_plant(small_plant_with_leaves());
     for (size_t bit = 0; bit < bytes.size() * 8; ++bit) {
         bytes[bit / 8] ^= std::byte(1 << bit % 8);
         ASSERT_FALSE(load(bytes)) << "bit " << bit;
@@ -131,7 +139,7 @@ TEST(LoadPlant, RefusesEveryFlippedBit) {
 }
 
 TEST(LoadPlant, RefusesBlocksWhoseSizeWraps) {
-    std::vector<std::byte> bytes = pack_plant(small_plant_in_cells());
+    std::vector<std::byte> bytes = pack_plant(small_plant_with_leaves());
     for (uint64_t count : {UINT64_MAX, UINT64_MAX / 16, UINT64_MAX / 256 + 1, uint64_t(1) << 60}) {
         for (size_t b = 0; b < k_block_count; ++b) {
             std::vector<std::byte> changed = bytes;
@@ -178,6 +186,39 @@ TEST(LoadPlant, RefusesCellsThatDoNotShareTheirPartOut) {
     EXPECT_EQ(place_of([](PlantBlocks& b) { b.cells[0].importance = NAN; }), "cells[0]");
     EXPECT_EQ(place_of([](PlantBlocks& b) { b.cells.pop_back(); }), "cells[0]") << "half of the part";
     EXPECT_EQ(place_of([](PlantBlocks& b) { b.points.push_back({}), b.point_owners.push_back(0); }), "parts");
+}
+
+TEST(LoadPlant, GivesBackLeaves) {
+    const PlantBlocks blocks = small_plant_with_leaves();
+    auto plant = load(pack_plant(blocks));
+    ASSERT_TRUE(plant) << to_string(plant.error());
+    ASSERT_EQ(plant->crowns.size(), 1u);
+    EXPECT_EQ(plant->crowns[0].full_count, 4u);
+    ASSERT_EQ(plant->leaves.size(), 6u);
+    EXPECT_EQ(std::memcmp(plant->leaves.data(), blocks.leaves.data(), plant->leaves.size_bytes()), 0);
+}
+
+TEST(LoadPlant, RefusesLeavesThatAreNoLevels) {
+    auto place_of = [](void (*change)(PlantBlocks&)) {
+        PlantBlocks blocks = small_plant_with_leaves();
+        change(blocks);
+        auto plant = load(pack_plant(blocks));
+        return plant ? std::string("taken") : plant.error().place;
+    };
+    EXPECT_EQ(place_of([](PlantBlocks& b) { b.crowns[0].part = 2; }), "crowns[0]") << "of no part";
+    EXPECT_EQ(place_of([](PlantBlocks& b) { b.crowns[0].part = 1; }), "crowns[0]") << "of lines";
+    EXPECT_EQ(place_of([](PlantBlocks& b) { b.crowns[0].first_leaf = 1; }), "crowns[0]");
+    EXPECT_EQ(place_of([](PlantBlocks& b) { b.crowns[0].full_count = 5; }), "crowns[0]") << "past the file";
+    EXPECT_EQ(place_of([](PlantBlocks& b) { b.crowns[0].full_count = UINT32_MAX; }), "crowns[0]");
+    EXPECT_EQ(place_of([](PlantBlocks& b) { b.crowns[0].full_count = 1; }), "crowns[0]") << "below the least";
+    EXPECT_EQ(place_of([](PlantBlocks& b) { b.crowns[0].least_count = 0; }), "crowns[0]");
+    EXPECT_EQ(place_of([](PlantBlocks& b) { b.crowns.push_back(b.crowns[0]); }), "crowns[1]") << "a second one";
+    EXPECT_EQ(place_of([](PlantBlocks& b) { b.leaves[1].birth_level = 1; }), "crowns[0]") << "removed as it is born";
+    EXPECT_EQ(place_of([](PlantBlocks& b) { b.leaves[4].birth_level = 2; }), "crowns[0]") << "two of one birth";
+    EXPECT_EQ(place_of([](PlantBlocks& b) { b.leaves[5].birth_level = 0; }), "crowns[0]") << "none born at level 2";
+    EXPECT_EQ(place_of([](PlantBlocks& b) { b.leaves[5].birth_level = UINT32_MAX; }), "crowns[0]");
+    EXPECT_EQ(place_of([](PlantBlocks& b) { b.leaves.push_back({}); }), "crowns[1]") << "of no crown";
+    EXPECT_EQ(place_of([](PlantBlocks& b) { b.crowns.clear(); }), "crowns[0]");
 }
 
 TEST(LoadPlant, RefusesValuesNoPlantCanHave) {

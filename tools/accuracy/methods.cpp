@@ -116,6 +116,10 @@ std::vector<Hybrid> hybrids() {
     unfiltered.filter_radius_px = 1.0f;
     FrameSettings alike;
     alike.weigh_by_facing = false;
+    FrameSettings no_leaves;
+    no_leaves.foliage = FoliageMode::points;
+    FrameSettings leaves;
+    leaves.foliage = FoliageMode::leaves;
     FrameSettings unblended;
     unblended.blend = false;
     CookSettings shuffled;
@@ -127,6 +131,10 @@ std::vector<Hybrid> hybrids() {
     return {
         {"hybrid, measured", "Points, lines and triangles by measured projections: the program's defaults.",
          FrameSettings{}, std::nullopt, true},
+        {"hybrid, no leaves", "The defaults, but leaves are never joined: triangles and points alone.",
+         no_leaves, std::nullopt, true},
+        {"reduced leaves", "Leaves joined two by two wherever a part has them, before points.", leaves,
+         std::nullopt, true},
         {"hybrid, isotropic",
          "The paper's hybrid with pi/4 of the lines' length for any direction, splat factor 1.3.", isotropic,
          leaf_lines},

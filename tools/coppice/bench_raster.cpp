@@ -19,7 +19,7 @@ struct Case {
     const char* pass;  // whose time counts; big triangles are added to triangles
     WorkKind kind;
     uint32_t count;
-    float size_px;       // length of a line, side of an equilateral triangle
+    float size_px;       // length of a line, side of an equilateral triangle or of a square leaf
     double reach_per_s;  // 0: for information
 };
 
@@ -54,6 +54,30 @@ std::vector<PackedVertex> make_vertices(const Case& test, float focal_px) {
     return vertices;
 }
 
+// Square leaves that face the viewer, as a packed plant has them: in steps of a grid, here of 1 / 65535 of a picture that
+// lies at one distance.
+std::vector<PackedVertex> make_leaves(const Case& test, float focal_px) {
+    constexpr float k_distance_m = 50.0f;
+    const float to_m = k_distance_m / focal_px, step_m = float(k_width) * to_m / 65535.0f;
+    std::vector<PackedVertex> vertices{
+        {-0.5f * float(k_width) * to_m, -0.5f * float(k_height) * to_m, -k_distance_m, 0},
+        {step_m, step_m, step_m, 0}};
+    Random random(1, uint64_t(test.kind) * 1000 + uint64_t(test.size_px * 10.0f));
+    for (uint32_t i = 0; i < test.count; ++i) {
+        const float turn = random.next_in(0.0f, 2.0f * k_pi);
+        const vec2 center(random.next_in(20.0f, float(k_width) - 20.0f), random.next_in(20.0f, float(k_height) - 20.0f));
+        PackedLeaf leaf{{}, uint32_t(random.next_bits()), 0};
+        for (size_t k = 0; k < 4; ++k) {
+            const float angle = turn + 0.5f * k_pi * float(k);
+            const vec2 corner = center + vec2(portable_cos(angle), portable_sin(angle)) * (test.size_px * 0.70710678f);
+            leaf.corners[3 * k] = uint16_t(corner.x * to_m / step_m);
+            leaf.corners[3 * k + 1] = uint16_t(corner.y * to_m / step_m);
+        }
+        for (const PackedVertex& texel : std::bit_cast<std::array<PackedVertex, 2>>(leaf)) vertices.push_back(texel);
+    }
+    return vertices;
+}
+
 void add_entries(const Case& test, WorkPart& work) {
     const uint32_t index = work.add_instance({});
     PartChoice choice;
@@ -61,8 +85,11 @@ void add_entries(const Case& test, WorkPart& work) {
     if (test.kind == WorkKind::points_2) choice.splat_px = 1.4f;
     (test.kind == WorkKind::lines       ? choice.lines
      : test.kind == WorkKind::triangles ? choice.triangles
+     : test.kind == WorkKind::leaves    ? choice.leaves
                                         : choice.points) = test.count;
-    work.add({}, choice, index);
+    PartGeometry geometry{};
+    geometry.leaves = {test.count, test.count};
+    work.add(geometry, choice, index);
 }
 
 double median(std::vector<double>& values) {
@@ -93,6 +120,8 @@ Result<nlohmann::json> bench_raster(const std::string& device_choice) {
         {"triangles of 16 px2", "triangles", WorkKind::triangles, 1'000'000, triangle_16, 0.0},
         {"triangles of 65 px2", "triangles", WorkKind::triangles, 200'000, triangle_65, 0.0},
         {"triangles of 900 px2", "triangles", WorkKind::triangles, 20'000, triangle_900, 0.0},
+        {"leaves of 4 px2", "leaves", WorkKind::leaves, 1'000'000, 2.0f, 0.0},
+        {"leaves of 16 px2", "leaves", WorkKind::leaves, 1'000'000, 4.0f, 0.0},
     };
     Camera camera;
     camera.position_world = dvec3(0.0);
@@ -100,7 +129,8 @@ Result<nlohmann::json> bench_raster(const std::string& device_choice) {
     nlohmann::json figures = nlohmann::json::array();
     std::vector<double> clear_ms, resolve_ms;
     for (const Case& test : cases) {
-        std::vector<PackedVertex> vertices = make_vertices(test, focal_px);
+        std::vector<PackedVertex> vertices = test.kind == WorkKind::leaves ? make_leaves(test, focal_px)
+                                                                           : make_vertices(test, focal_px);
         COPPICE_CHECK(rasteriser->set_geometry({vertices, {}}));
         WorkList work;
         work.begin(1);

@@ -22,7 +22,8 @@ Status MethodDrawer::show(const DrawnFrame& drawn) {
     geometry_bytes_ = 0;
     for (const Plant& plant : drawn.scene->plants)
         geometry_bytes_ += plant.triangle_vertices.size_bytes() + plant.points.size_bytes() +
-                           plant.point_owners.size_bytes() + plant.line_vertices.size_bytes();
+                           plant.point_owners.size_bytes() + plant.line_vertices.size_bytes() +
+                           plant.leaves.size_bytes();
     return {};
 }
 

@@ -140,7 +140,7 @@ void add_play(CLI::App& app, Command& chosen) {
     const std::map<std::string, RepresentationView> views{{"lit", RepresentationView::lit},
                                                           {"kinds", RepresentationView::kinds}};
     play->add_option("--view", options.settings.view,
-                     "lit, or kinds: triangles green, lines blue, points red")
+                     "lit, or kinds: triangles green, leaves yellow, lines blue, points red")
         ->transform(CLI::CheckedTransformer(views).description(""))
         ->default_str("lit");
     play->add_flag("--full", command->full, "Every triangle: no level of detail");

@@ -104,11 +104,13 @@ std::string time_plot(const PlayRecord& record, const std::vector<double>& time_
 std::string count_plot(const PlayRecord& record, const std::vector<double>& time_s) {
     std::vector<PlotSeries> series{{"points", "#c8553d", {}},
                                    {"lines, two vertices each", "#3d6fa8", {}},
-                                   {"triangles, three vertices each", "#4f9a5a", {}}};
+                                   {"triangles, three vertices each", "#4f9a5a", {}},
+                                   {"leaves, four vertices each", "#d3b13a", {}}};
     for (const FrameRecord& frame : record.frames) {
         series[0].values.push_back(double(frame.report.points));
         series[1].values.push_back(2.0 * double(frame.report.lines));
         series[2].values.push_back(3.0 * double(frame.report.triangles));
+        series[3].values.push_back(4.0 * double(frame.report.leaves));
     }
     return stacked_plot(time_s, series, {"Vertices drawn by kind", "flight time, s", "vertices a frame"});
 }

@@ -58,6 +58,7 @@ std::vector<Figure> play_figures(const PlayRecord& record) {
         {"triangles", count([](auto& f) { return f.report.triangles; }), "per frame", {}},
         {"lines", count([](auto& f) { return f.report.lines; }), "per frame", {}},
         {"points", count([](auto& f) { return f.report.points; }), "per frame", {}},
+        {"leaves", count([](auto& f) { return f.report.leaves; }), "per frame", {}},
         {"terrain_triangles", count([](auto& f) { return f.report.terrain_triangles; }), "per frame", {}},
         {"full_triangles_in_view", count([](auto& f) { return f.report.full_triangles; }), "per frame", {}},
         {"scene_triangles", double(record.scene_triangles), "", {}},
@@ -112,7 +113,7 @@ std::string frames_csv(const PlayRecord& record) {
     std::string csv = "frame,time_s,wall_ms,schedule_ms,stream_ms,cull_ms,lod_ms,write_ms";
     for (const std::string& pass : record.passes) csv += ",gpu_" + pass + "_ms";
     csv +=
-        ",sample_distance_px,vertex_budget,vertices,triangles,lines,points,terrain_triangles,full_triangles,"
+        ",sample_distance_px,vertex_budget,vertices,triangles,lines,points,leaves,terrain_triangles,full_triangles,"
         "tiles_touched,clouds,tiles_missing,stream_bytes_read,stream_resident_bytes,plants_visible,tiles_"
         "hidden,"
         "plants_hidden,work_entries,dropped_entries\n";
@@ -123,9 +124,9 @@ std::string frames_csv(const PlayRecord& record) {
                            report.write_ms);
         for (double ms : frame.pass_ms) csv += fmt::format(",{:.4f}", ms);
         csv +=
-            fmt::format(",{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", report.sample_distance_px,
+            fmt::format(",{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", report.sample_distance_px,
                         report.vertex_budget, report.vertices, report.triangles, report.lines, report.points,
-                        report.terrain_triangles, report.full_triangles, report.tiles_touched, report.clouds,
+                        report.leaves, report.terrain_triangles, report.full_triangles, report.tiles_touched, report.clouds,
                         report.tiles_missing, report.stream_bytes_read, report.stream_resident_bytes,
                         report.plants_visible, report.tiles_hidden, report.plants_hidden, report.work_entries,
                         report.dropped_entries);

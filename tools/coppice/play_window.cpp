@@ -75,10 +75,10 @@ std::string title_of(const PlayHost& host, const FrameSettings& settings, double
                "P pause path, R replay | F2 kinds, F3 level of detail, F1 figures, Esc quits";
     const FrameReport& report = host.vegetation->report();
     return fmt::format(
-        "{} | {:.1f} ms, {:.0f} Hz | d' {:.2f} px, c_p {:.2f}{} | {} triangles, {} lines, {} points",
+        "{} | {:.1f} ms, {:.0f} Hz | d' {:.2f} px, c_p {:.2f}{} | {} triangles, {} leaves, {} lines, {} points",
         host.scene.name, median_ms, 1000.0 / std::max(median_ms, 1e-3), report.sample_distance_px,
         settings.splat_factor, settings.level_of_detail ? "" : ", every triangle",
-        short_count(double(report.triangles)), short_count(double(report.lines)),
+        short_count(double(report.triangles)), short_count(double(report.leaves)), short_count(double(report.lines)),
         short_count(double(report.points)));
 }
 

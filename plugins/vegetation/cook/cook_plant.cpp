@@ -16,6 +16,7 @@
 #include "plugins/vegetation/cook/measure_projection.h"
 #include "plugins/vegetation/cook/merge_parts.h"
 #include "plugins/vegetation/cook/openness.h"
+#include "plugins/vegetation/cook/pack_leaves.h"
 #include "plugins/vegetation/cook/space_curve.h"
 #include "plugins/vegetation/cook/trace_lines.h"
 #include "plugins/vegetation/cook/triangle_areas.h"
@@ -80,6 +81,7 @@ class PartPacker {
         }
         plant_.bounds_plant.include(bounds_);
         plant_.parts.push_back(packed_);
+        if (mesh_.leaf && !lines) pack_crown();
         return {};
     }
 
@@ -170,6 +172,13 @@ class PartPacker {
             packed_.point_radius_m = float(std::sqrt(part_.area_m2 / (double(points.size()) * double(k_pi))));
     }
 
+    void pack_crown() {
+        PackedLeaves crown = pack_leaves(mesh_, packed_, openness_, dither_seed_);
+        if (crown.leaves.empty()) return;
+        plant_.crowns.push_back({0, 0, crown.full_count, crown.least_count});
+        plant_.leaves = std::move(crown.leaves);
+    }
+
     Status pack_lines() {
         TracedLines traced = trace_lines(mesh_, part_.shape.skeleton);
         if (traced.lines.size() > line_limit_)
@@ -256,6 +265,12 @@ void add_part(const PlantBlocks& packed, const PlantBlocks& its_cells, PlantBloc
         cell.first_line += uint32_t(cells.line_vertices.size() / 2);
         cells.cells.push_back(cell);
     }
+    for (PackedCrown crown : packed.crowns) {
+        crown.part = uint32_t(plant.parts.size());
+        crown.first_leaf = uint32_t(plant.leaves.size());
+        plant.crowns.push_back(crown);
+    }
+    append(plant.leaves, packed.leaves);
     plant.parts.push_back(part);
     append(plant.triangle_vertices, packed.triangle_vertices);
     append(plant.points, packed.points);

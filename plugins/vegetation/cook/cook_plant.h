@@ -1,7 +1,7 @@
 // READ FIRST. The offline stage: a plant as described becomes a packed plant, ready to be drawn at any
 // distance.
 //   clean_mesh -> openness, classify (trace_skeleton, split_by_thickness) -> merge_parts -> importance
-//              -> for each part: progressive_order, sample_points or trace_lines, measure_projection
+//              -> for each part: progressive_order, sample_points or trace_lines, measure_projection, pack_leaves
 //              -> measure_coverage, build_octree, cut_part -> pack_plant
 #pragma once
 #include <cstddef>
@@ -15,7 +15,7 @@
 namespace coppice {
 
 // Goes into the key of cached plants: raise it when the bytes of an unchanged description change.
-inline constexpr uint32_t k_cook_version = 14;
+inline constexpr uint32_t k_cook_version = 15;
 
 struct CookSettings {
     PointSampler sampler = PointSampler::automatic;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include "plugins/vegetation/plant/direction_form.h"
+#include "plugins/vegetation/plant/leaf_range.h"
 #include "runtime/core/hash.h"
 
 namespace coppice {
@@ -24,6 +25,16 @@ ptrdiff_t cell_count(const Plant& plant, const PackedPart& part) {
     const auto index = uint32_t(&part - plant.parts.data());
     return std::count_if(plant.cells.begin(), plant.cells.end(),
                          [index](const PackedPart& cell) { return cell.part == index; });
+}
+
+// At d' = 1 px, of which leaves cover these multiples: the range in which FoliageMode::automatic draws them.
+struct LeafSizes {
+    float from_px2, to_px2;  // of the crown's own leaves; to <= from: nowhere
+};
+LeafSizes leaf_sizes(const Plant& plant, const PackedCrown& crown) {
+    const LeafRange range =
+        automatic_leaf_range(plant.parts[crown.part], crown.full_count, crown.least_count);
+    return {range.from / float(crown.full_count), range.to / float(crown.full_count)};
 }
 
 }  // namespace
@@ -52,10 +63,19 @@ std::string inspect_plant(const Plant& plant) {
             part.importance, part.projected_area_m2.evaluate(vec3(0, 1, 0)),
             part.projected_area_m2.evaluate(vec3(1, 0, 0)), srgb_hex(part.mean_color_linear));
     }
+    for (const PackedCrown& crown : plant.crowns) {
+        const LeafSizes sizes = leaf_sizes(plant, crown);
+        text += fmt::format("{}: {} leaves, joined down to {}; ", plant.parts[crown.part].name, crown.full_count,
+                            crown.least_count);
+        text += sizes.from_px2 < sizes.to_px2
+                    ? fmt::format("drawn where one covers {:.1f} to {:.1f} d'^2 in the mean; smaller and larger ones as points or triangles\n",
+                                  sizes.from_px2, sizes.to_px2)
+                    : "never drawn: points or triangles are better\n";
+    }
     text += fmt::format(
-        "bytes: parts {}, cells {}, triangle vertices {}, points {}, point owners {}, line vertices {}\n",
+        "bytes: parts {}, cells {}, triangle vertices {}, points {}, point owners {}, line vertices {}, leaves {}\n",
         plant.parts.size_bytes(), plant.cells.size_bytes(), plant.triangle_vertices.size_bytes(),
-        plant.points.size_bytes(), plant.point_owners.size_bytes(), plant.line_vertices.size_bytes());
+        plant.points.size_bytes(), plant.point_owners.size_bytes(), plant.line_vertices.size_bytes(), plant.leaves.size_bytes());
     if (plant.dropped_triangles || plant.dropped_vertices)
         text +=
             fmt::format("dropped when cooked: {} triangles without area, {} vertices without a triangle\n",
@@ -90,6 +110,16 @@ std::string inspect_plant_json(const Plant& plant) {
                          {"mean_color_linear", triple(part.mean_color_linear)},
                          {"bounds_min_m", triple(part.bounds_min)},
                          {"bounds_max_m", triple(part.bounds_max)}});
+    ordered_json crowns = ordered_json::array();
+    for (const PackedCrown& crown : plant.crowns) {
+        const LeafSizes sizes = leaf_sizes(plant, crown);
+        crowns.push_back({{"part", plant.parts[crown.part].name},
+                          {"leaves", crown.full_count},
+                          {"least_leaves", crown.least_count},
+                          {"drawn", sizes.from_px2 < sizes.to_px2},
+                          {"drawn_from_px2", sizes.from_px2},
+                          {"drawn_to_px2", sizes.to_px2}});
+    }
     ordered_json root = {{"name", plant.name},
                          {"content_hash", hash_to_hex(plant.content_hash)},
                          {"bounds_min_m", {low.x, low.y, low.z}},
@@ -106,7 +136,9 @@ std::string inspect_plant_json(const Plant& plant) {
                            {"triangle_vertices", plant.triangle_vertices.size_bytes()},
                            {"points", plant.points.size_bytes()},
                            {"point_owners", plant.point_owners.size_bytes()},
-                           {"line_vertices", plant.line_vertices.size_bytes()}}},
+                           {"line_vertices", plant.line_vertices.size_bytes()},
+                           {"leaves", plant.leaves.size_bytes()}}},
+                         {"crowns", std::move(crowns)},
                          {"parts", std::move(parts)}};
     // A name that is not UTF-8 must not throw.
     return root.dump(2, ' ', false, ordered_json::error_handler_t::replace);

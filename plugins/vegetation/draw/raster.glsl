@@ -33,11 +33,12 @@ const uint k_view_lit = 0u, k_view_kinds = 1u;
 struct Entry {
     uint first_vertex, count, instance, first_owner;
     float size_px;   // splat side or line width
-    uint owner_min;  // of points that carry a density their height gain, of lines the share that is turned
+    uint owner_min;  // of points that carry a density their height gain, of lines the share that is turned, of leaves the level
     bool cull_back;   // of triangles
     bool ground;
     float mean_facing;    // of points: |cos| of normal and view in the mean; 0: all are of one size
     float density_limit;  // PartChoice::density_limit_m2; 0: points carry no density
+    uint grid;            // of leaves: where the part's LeafGrid is
 };
 
 // The entry of this lane, false where there is none; its primitives are i = first; i < count; i += step.
@@ -59,7 +60,7 @@ bool take_entry(out uint index, out uint first, out uint step) {
 Entry load_entry(uint index) {
     uvec4 a = texelFetch(entries, int(index * 2u));
     uvec4 b = texelFetch(entries, int(index * 2u + 1u));
-    return Entry(a.x, a.y, a.z & ~k_ground_bit, a.w, uintBitsToFloat(b.x), b.y, b.z != 0u, (a.z & k_ground_bit) != 0u, uintBitsToFloat(b.w), uintBitsToFloat(b.z));
+    return Entry(a.x, a.y, a.z & ~k_ground_bit, a.w, uintBitsToFloat(b.x), b.y, b.z != 0u, (a.z & k_ground_bit) != 0u, uintBitsToFloat(b.w), uintBitsToFloat(b.z), b.z);
 }
 
 // Plant space -> (column * w, row * w, w), and the rotation for normals.
@@ -96,7 +97,7 @@ vec3 project(Transform t, vec3 position) {
     return vec3(vec2(dot(t.to_x, p), dot(t.to_y, p)) / w, w);
 }
 
-const uint k_kind_point = 0u, k_kind_line = 1u, k_kind_triangle = 2u;
+const uint k_kind_point = 0u, k_kind_line = 1u, k_kind_triangle = 2u, k_kind_leaf = 3u;
 
 vec3 turn_direction(Transform t, vec3 direction) {
     return vec3(dot(t.turn_x, direction), dot(t.turn_y, direction), dot(t.turn_z, direction));
@@ -134,7 +135,7 @@ vec3 unit_normal(Transform t, uint surface) {
 uint turn_surface(Transform t, uint surface, uint kind) {
     vec3 n = decode_normal(surface);
     uint turned = encode_normal(turn_direction(t, n));
-    uint kind_color = kind == k_kind_point ? 0x0000f000u | 0x0001f000u : kind == k_kind_line ? 0x0f800000u : 0x007e0000u;
+    uint kind_color = kind == k_kind_point ? 0x0000f000u | 0x0001f000u : kind == k_kind_line ? 0x0f800000u : kind == k_kind_leaf ? 0x007ff000u : 0x007e0000u;
     uint plant_color = t.ground ? 0u : k_color_bits;
     uint color = frame.view == k_view_lit ? surface & k_color_bits : frame.view == k_view_kinds ? kind_color : plant_color;
     return (surface & ~(k_normal_bits | k_color_bits)) | turned | color;

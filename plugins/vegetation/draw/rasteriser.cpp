@@ -6,6 +6,7 @@
 #include "runtime/core/log.h"
 #include "shaders/accumulate.comp.h"
 #include "shaders/raster_big_triangles.comp.h"
+#include "shaders/raster_leaves.comp.h"
 #include "shaders/raster_lines.comp.h"
 #include "shaders/raster_triangles.comp.h"
 #include "shaders/resolve.comp.h"
@@ -120,6 +121,8 @@ Status Rasteriser::make_pipelines() {
         COPPICE_CHECK(points(WorkKind::points_blend, "points, blended", 0, 1));
         COPPICE_TRY(pipelines[size_t(WorkKind::lines)],
                     make("lines", k_raster_lines_spirv, k_lines, sizeof(RasterConstants), {lanes, small}));
+        COPPICE_TRY(pipelines[size_t(WorkKind::leaves)],
+                    make("leaves", k_raster_leaves_spirv, k_lines, sizeof(RasterConstants), {lanes, small}));
         COPPICE_TRY(pipelines[size_t(WorkKind::triangles)],
                     make("triangles", k_raster_triangles_spirv, k_triangles, sizeof(RasterConstants),
                          {lanes, small}));
@@ -264,7 +267,8 @@ void Rasteriser::draw(VkCommandBuffer commands, WorkKind kind) {
     const Slot& slot = slots_[slot_];
     const gpu::Buffer* buffers[] = {&visibility_, &vertices_, &slot.entries, &slot.instances,
                                     &last_binding(kind)};
-    std::span<const gpu::Buffer* const> bound(buffers, kind == WorkKind::lines ? 4 : 5);
+    std::span<const gpu::Buffer* const> bound(
+        buffers, kind == WorkKind::lines || kind == WorkKind::leaves ? 4 : 5);
     auto dispatch = [&](const gpu::Pipeline& pipeline, WorkRange range, uint32_t entries_a_group) {
         if (range.entry_count == 0) return;
         RasterConstants constants = raster_;
@@ -337,6 +341,7 @@ void Rasteriser::add_passes() {
             vkCmdCopyBuffer(commands, big_triangles_.handle(), slots_[slot_].big_count.handle(), 1,
                             &first_word);
         });
+    add_draw("leaves", WorkKind::leaves, {{visibility_resource_, BufferAccess::compute_atomic}});
     add_draw("lines", WorkKind::lines, {{visibility_resource_, BufferAccess::compute_atomic}});
     add_draw("points 1 px", WorkKind::points_1, {{visibility_resource_, BufferAccess::compute_atomic}});
     add_draw("points 2 px", WorkKind::points_2, {{visibility_resource_, BufferAccess::compute_atomic}});

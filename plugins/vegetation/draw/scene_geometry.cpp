@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include "plugins/vegetation/plant/leaf_bands.h"
 #include "plugins/vegetation/plant/line_points.h"
 #include "plugins/vegetation/plant/point_run.h"
 
@@ -19,6 +20,18 @@ void add_line_points(const Plant& plant, const PackedPart& part, SceneGeometry& 
         geometry.vertices.push_back(point.vertex);
         geometry.owners.push_back(std::bit_cast<uint32_t>(pack_density(0.0, point.width_share)));
     }
+}
+
+void add_crown(const Plant& plant, const PackedCrown& crown, PartGeometry& place, SceneGeometry& geometry) {
+    place.leaves = {crown.full_count, crown.least_count};
+    place.first_leaf_vertex = uint32_t(geometry.vertices.size());
+    const LeafGrid grid = leaf_grid(plant.parts[crown.part]);
+    for (const vec3& v : {grid.origin_plant, grid.step_m}) geometry.vertices.push_back({v.x, v.y, v.z, 0});
+    static_assert(sizeof(PackedLeaf) == 2 * sizeof(PackedVertex));
+    for (const PackedLeaf& leaf :
+         plant.leaves.subspan(crown.first_leaf, banded_leaf_count(crown.full_count, crown.least_count)))
+        for (const PackedVertex& texel : std::bit_cast<std::array<PackedVertex, 2>>(leaf))
+            geometry.vertices.push_back(texel);
 }
 
 }  // namespace
@@ -46,6 +59,7 @@ Result<SceneGeometry> gather_geometry(const GeometrySource& source) {
     for (const Ground& ground : source.grounds)
         vertex_count += ground.coarse.vertices.size() + (ground.terrain ? ground.terrain->vertex_count() : 0);
     for (const Plant& plant : plants) {
+        vertex_count += 2 * plant.leaves.size() + 2 * plant.crowns.size();
         vertex_count += plant.triangle_vertices.size() + plant.points.size() + plant.line_vertices.size();
         owner_count += plant.point_owners.size();
         for (const auto& parts : {plant.parts, plant.cells})
@@ -94,7 +108,7 @@ Result<SceneGeometry> gather_geometry(const GeometrySource& source) {
             geometry.part_geometry.push_back(
                 {first_triangle_vertex + part.first_triangle * 3, first_point + part.first_point,
                  first_line_vertex + part.first_line * 2, first_owner + part.first_point,
-                 (part.flags & k_part_faces_outwards) != 0, part.point_count, part.line_count, 0});
+                 (part.flags & k_part_faces_outwards) != 0, part.point_count, part.line_count, 0, 0, {}});
             if (part.kind == PackedPartKind::lines) add_line_points(plant, part, geometry);
             const vec3 low(part.bounds_min[0], part.bounds_min[1], part.bounds_min[2]);
             const vec3 high(part.bounds_max[0], part.bounds_max[1], part.bounds_max[2]);
@@ -108,6 +122,8 @@ Result<SceneGeometry> gather_geometry(const GeometrySource& source) {
             place.point_turn_mask = point_turn_mask(place.point_count);
             model.triangle_count += part.triangle_count;
         }
+        for (const PackedCrown& crown : plant.crowns)
+            add_crown(plant, crown, geometry.part_geometry[model.first_part + crown.part], geometry);
         for (const PackedPart& cell : plant.cells) {
             PartCells& cells = geometry.part_cells[model.first_part + cell.part];
             if (cells.count++ == 0) cells.first = uint32_t(geometry.parts.size());

@@ -72,7 +72,7 @@ void each_part(const SeenPlants& seen, const SceneGeometry& geometry, const Fram
         const DrawModel& model = geometry.models[group.model];
         const PlantViews views = seen.views(group);
         for (uint32_t part = model.first_part; part < model.first_part + model.part_count; ++part) {
-            const PartRule rule(geometry.parts[part], settings);
+            const PartRule rule(geometry.parts[part], settings, geometry.part_geometry[part].leaves);
             const PartCells cells = geometry.part_cells[part];
             rule.demand(geometry.parts[part], views, settings, demands);
             for (size_t i = 0; i < views.size(); ++i) {

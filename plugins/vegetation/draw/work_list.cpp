@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include "plugins/vegetation/plant/leaf_bands.h"
 #include "plugins/vegetation/plant/point_run.h"
 #include "runtime/core/jobs.h"
 
@@ -33,7 +34,7 @@ size_t lane_bucket(uint32_t count) { return count <= 4 ? 0 : count <= 8 ? 1 : co
 }  // namespace
 
 void WorkPart::clear() {
-    triangles = lines = points = 0;
+    triangles = lines = points = leaves = 0;
     own_instances_.clear();
     instances_ = {};
     entry_count_ = 0;
@@ -77,6 +78,16 @@ void WorkPart::add_ground(uint32_t first_vertex, uint32_t triangle_count, uint32
     add_triangles(first_vertex, triangle_count, instance | k_ground_bit, false);
 }
 
+void WorkPart::add_leaves(const PartGeometry& geometry, uint32_t count, uint32_t instance) {
+    const LeafLevels levels = geometry.leaves;
+    const LeafRun run = leaves_of_level(levels.full_count, levels.least_count, count);
+    leaves += count;
+    add_run(WorkKind::leaves,
+            {geometry.first_leaf_vertex + 2 + 2 * run.first, run.count, instance, 0, 0.0f,
+             levels.full_count - count, geometry.first_leaf_vertex, 0.0f},
+            2);
+}
+
 void WorkPart::add_from(WorkKind kind, WorkEntry entry, uint32_t vertices_a_primitive, uint32_t first,
                         uint32_t stored, uint32_t count, bool has_owners) {
     const uint32_t from_start = std::min(count, stored - first);
@@ -97,6 +108,7 @@ void WorkPart::add(const PartGeometry& geometry, const PartChoice& choice, uint3
     points += choice.points - choice.skipped_points;
     if (choice.triangles > 0)
         add_triangles(geometry.first_triangle_vertex, choice.triangles, instance, geometry.cull_back);
+    if (choice.leaves > 0) add_leaves(geometry, choice.leaves, instance);
     if (choice.lines > 0)
         add_from(WorkKind::lines,
                  {geometry.first_line_vertex, 0, instance, 0, choice.line_width_px,

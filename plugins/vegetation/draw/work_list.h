@@ -14,8 +14,8 @@ namespace coppice {
 
 // One dispatch each. Points by the pixels a splat can touch along one axis; blend: of any size, leaving out points
 // whose triangle is drawn, and of clouds those beyond the density their place asks for; each may have a size of its own.
-enum class WorkKind : uint8_t { triangles, lines, points_1, points_2, points_any, points_blend };
-inline constexpr size_t k_work_kinds = 6;
+enum class WorkKind : uint8_t { triangles, lines, points_1, points_2, points_any, points_blend, leaves };
+inline constexpr size_t k_work_kinds = 7;
 
 // 32 bytes, two texels; raster.glsl reads it.
 struct WorkEntry {
@@ -25,9 +25,11 @@ struct WorkEntry {
     uint32_t first_owner;   // points_blend only; of clouds the points' densities
     float size_px;          // splat side or line width
     uint32_t
-        owner_min;  // points_blend; of those that carry a density PartChoice::height_gain, of lines the bits of its turned_share
+        owner_min;  // points_blend; of those that carry a density PartChoice::height_gain, of lines the bits of its turned_share;
+              // of leaves the level
     uint32_t
-        cull_back;  // triangles: 1: those that turn their back are left out; points: bits of density_limit_m2
+        cull_back;  // triangles: 1: those that turn their back are left out; points: bits of density_limit_m2;
+                         // leaves: where the part's LeafGrid is
     float mean_facing;  // PartChoice's
 };
 static_assert(sizeof(WorkEntry) == 32);
@@ -56,6 +58,9 @@ struct PartGeometry {
     bool cull_back;  // the triangles are wound and closed so that their backs are never seen
     uint32_t point_count, line_count;  // stored
     uint32_t point_turn_mask;          // plant/point_run.h; 0: all plants begin with the first
+    // Two texels a leaf, in bands; before them two for the part's LeafGrid.
+    uint32_t first_leaf_vertex;
+    LeafLevels leaves;
 };
 
 // What one job adds. Kept from frame to frame, so that a warm frame allocates nothing. Entries stand as they came; gather
@@ -83,11 +88,12 @@ class WorkPart {
              std::span<const uint8_t> left_out, uint32_t first_instance, float start);
     void add_ground(uint32_t first_vertex, uint32_t triangle_count, uint32_t instance);
 
-    uint64_t triangles = 0, lines = 0, points = 0;
+    uint64_t triangles = 0, lines = 0, points = 0, leaves = 0;
 
   private:
     friend class WorkList;
     void add_triangles(uint32_t first_vertex, uint32_t count, uint32_t instance, bool cull_back);
+    void add_leaves(const PartGeometry& geometry, uint32_t count, uint32_t instance);
     void add_run(WorkKind kind, WorkEntry entry, uint32_t vertices_a_primitive);
     void add_from(WorkKind kind, WorkEntry entry, uint32_t vertices_a_primitive, uint32_t first,
                   uint32_t stored, uint32_t count, bool has_owners);

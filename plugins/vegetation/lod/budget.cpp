@@ -135,6 +135,34 @@ double vertices_at(const BudgetHistogram& histogram, float sample_distance_px) {
     return sums.vertices_at(double(px2));
 }
 
+namespace {
+
+// Leaves have the vertices of the points in their place up to p = 4 L, keep those up to p = leaves_to, and from there on
+// points and triangles are what they are without them.
+void add_leaves(BudgetHistogram& histogram, const PackedPart& part, const PartRule& rule, float wanted,
+                bool blend) {
+    const float all = 3.0f * float(part.triangle_count), stored = std::max(float(part.point_count), 1.0f);
+    const float to = rule.leaves_to(), most_leaves = std::min(k_points_a_leaf * rule.full_leaves(), to);
+    const float triangles_from = blend ? 1.5f * stored : stored;
+    // Vertices for p > stored, up to triangles_from.
+    const float slope = blend ? (all - stored) / (0.5f * stored) : 0.0f;
+    auto without_leaves = [&](float p) {
+        return p >= triangles_from ? all : std::min(p, stored) + slope * std::max(p - stored, 0.0f);
+    };
+    histogram.add_saturating(wanted, most_leaves, 1.0f);
+    histogram.add_jump(wanted, to, without_leaves(to) - most_leaves);
+    if (to < stored) {
+        histogram.add_saturating(wanted, stored, 1.0f);
+        histogram.add_saturating(wanted, to, -1.0f);
+    }
+    if (to >= triangles_from) return;
+    if (!blend) return histogram.add_jump(wanted, stored, all - stored);
+    histogram.add_saturating(wanted, triangles_from, slope);
+    histogram.add_saturating(wanted, std::max(stored, to), -slope);
+}
+
+}  // namespace
+
 void add_part(BudgetHistogram& histogram, const PackedPart& part, const PartRule& rule,
               const PartDemand& demand, const FrameSettings& settings) {
     const float all = 3.0f * float(part.triangle_count);
@@ -143,8 +171,9 @@ void add_part(BudgetHistogram& histogram, const PackedPart& part, const PartRule
     const bool any = demand.area_px2 > 0.0f;
     if (rule.is_points()) {
         if (!any) return;
-        if (part.point_count == 0) return histogram.add_always(all);
         const float wanted = rule.at_1px(rule.point_count(demand.area_px2));
+        if (rule.leaves_count_apart()) return add_leaves(histogram, part, rule, wanted, settings.blend);
+        if (part.point_count == 0) return histogram.add_always(all);
         if (settings.blend) return histogram.add_points(wanted, float(part.point_count), all);
         return histogram.add_switching_points(wanted, float(part.point_count), all);
     }

@@ -69,6 +69,10 @@ class BudgetHistogram {
     void add_saturating(float wanted_at_1px, float limit, float weight) {
         add_by_area(wanted_at_1px / limit, weight * wanted_at_1px, weight * limit);
     }
+    // So many more, or less, at wanted_at_1px / d'^2 >= from. Requires finite numbers and from > 0.
+    void add_jump(float wanted_at_1px, float from, float vertices) {
+        add_by_area(wanted_at_1px / from, 0.0f, vertices);
+    }
     // What is drawn at any d'.
     void add_always(float vertices) {
         if (vertices > 0.0f) bins_.back().most += quantise(vertices);
@@ -142,7 +146,7 @@ float solve_sample_distance(const BudgetHistogram& histogram, uint64_t fixed_ver
 // apart from what meets its budget. Does not allocate.
 double vertices_at(const BudgetHistogram& histogram, float sample_distance_px);
 
-// What choose_part will draw, in the mean over chance. Coverage gains change with d' by a tenth or two an octave; they are
+// What choose_part will draw, in the mean over chance; four vertices a leaf. Coverage gains change with d' by a tenth or two an octave; they are
 // taken at settings.sample_distance_px, so solve again where the d' found is far from that: settle_sample_distance.
 // rule: of part and settings.
 void add_part(BudgetHistogram& histogram, const PackedPart& part, const PartRule& rule,

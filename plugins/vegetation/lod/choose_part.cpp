@@ -7,6 +7,7 @@
 namespace coppice {
 namespace {
 
+constexpr float k_latest_leaves = 1.0f / 0.75f;  // PartRule::draws_leaves
 constexpr float k_widest_line_px = 64.0f;  // raster_lines.comp
 
 float sample_distance(const FrameSettings& settings) {
@@ -20,7 +21,7 @@ float line_sample_distance(const FrameSettings& settings) {
 
 }  // namespace
 
-PartRule::PartRule(const PackedPart& part, const FrameSettings& settings)
+PartRule::PartRule(const PackedPart& part, const FrameSettings& settings, LeafLevels leaves)
     : is_points_(part.kind == PackedPartKind::points),
       always_triangles_(!settings.level_of_detail || part.triangle_count == 0),
       d_px_(sample_distance(settings)),
@@ -57,6 +58,17 @@ PartRule::PartRule(const PackedPart& part, const FrameSettings& settings)
     // The squares of p points add up to c_p A'.
     splat_px_ = d_px_ / std::sqrt(importance_ * (weighs ? mean_facing_ : 1.0f));
     line_width_px_ = line_d_px_ / importance_;
+    if (leaves.full_count == 0 || !is_points_ || always_triangles_ || settings.foliage == FoliageMode::points)
+        return;
+    const LeafRange range = settings.foliage == FoliageMode::leaves
+                                ? whole_leaf_range(part, leaves.least_count)
+                                : automatic_leaf_range(part, leaves.full_count, leaves.least_count);
+    // Each plant's own beginning is within a quarter of it.
+    if (range.to <= k_latest_leaves * range.from) return;
+    full_leaves_ = float(leaves.full_count);
+    least_leaves_ = float(leaves.least_count);
+    leaves_from_ = range.from;
+    leaves_to_ = range.to;
 }
 
 PartChoice PartRule::expand(const Choice& choice, float side_gain) const {
@@ -64,6 +76,9 @@ PartChoice PartRule::expand(const Choice& choice, float side_gain) const {
     switch (choice.form) {
         case Form::triangles:
             out.triangles = triangle_count_;
+            return out;
+        case Form::leaves:
+            out.leaves = choice.count;
             return out;
         case Form::lines:
             out.lines = std::min(choice.count, line_count_);

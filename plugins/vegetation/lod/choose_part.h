@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 #include "plugins/vegetation/lod/project.h"
+#include "plugins/vegetation/plant/leaf_range.h"
 
 namespace coppice {
 
@@ -12,6 +13,7 @@ struct PartChoice {
     uint32_t triangles = 0;
     uint32_t points = 0;
     uint32_t lines = 0;
+    uint32_t leaves = 0;  // of the part's crown: its level with so many
     uint32_t point_owner_min = 0;  // only points whose triangle is at or past this one are drawn
     uint32_t skipped_points = 0;   // about how many of `points` that leaves out
     float splat_px = 0.0f;         // side of the square a point covers
@@ -49,11 +51,16 @@ struct PartDemands {
 // From above and from the side other shares of a plant are hidden. How many points there are does not depend on it.
 inline float side_gain_of(HeightGain gain, float height) { return std::sqrt(seen_gain(gain, height)); }
 
+// The levels of a part's crown (plant/plant.h, PackedCrown); 0: it has none.
+struct LeafLevels {
+    uint32_t full_count = 0, least_count = 0;
+};
+
 // The rules for one part, with all that the plants of a frame have in common. What remains for each plant has no branches,
 // so that compilers make vectors of loops over plants.
 class PartRule {
   public:
-    PartRule(const PackedPart& part, const FrameSettings& settings);
+    PartRule(const PackedPart& part, const FrameSettings& settings, LeafLevels leaves = {});
 
     // The gain was measured at d' = 1. Points of side d' overlap as points of one pixel do in a picture d' times coarser,
     // and what the triangles cover does not depend on the resolution: so d' is the unit of length here.
@@ -67,11 +74,12 @@ class PartRule {
         blend,        // the first triangles and the points of the others
         lines,        // the first of them
         line_points,  // the first points that stand for lines (plant/line_points.h)
+        leaves,       // the level of the crown with so many
     };
     struct Choice {
         Form form;
         uint32_t count;  // of what the form names, 0 for all triangles; of a blend the triangles
-        float asked;     // of points p, of lines q, not rounded
+        float asked;     // of points and leaves p, of lines q, not rounded
     };
     // chance in [0, 1): rounds a fraction of a point or line up or down.
     Choice choose(const PartDemand& demand, float chance) const {
@@ -92,12 +100,30 @@ class PartRule {
         const bool any = demand.area_px2 > 0.0f;
         const bool all = always_triangles_ | (any & (p >= triangles_from_));
         const bool blends = any & (p >= points_);
-        const float count = (blends ? (p - points_) * blended_per_point_ : p) + chance;
-        return {all      ? Form::triangles
-                : blends ? Form::blend
-                         : Form::points,
-                round_down(all ? 0.0f : count, k_most_count), p};
+        const bool as_leaves = draws_leaves(p, chance);
+        const float leaves = p * (1.0f / k_points_a_leaf) + chance;
+        const float few = leaves > least_leaves_ ? leaves : least_leaves_;
+        const float count = as_leaves ? (few < full_leaves_ ? few : full_leaves_)
+                                      : (blends ? (p - points_) * blended_per_point_ : p) + chance;
+        return {as_leaves ? Form::leaves
+                : all     ? Form::triangles
+                : blends  ? Form::blend
+                          : Form::points,
+                round_down(all & !as_leaves ? 0.0f : count, k_most_count), p};
     }
+    // Leaves stand between points and triangles. Each plant changes to points at a p of its own within a quarter of that of
+    // all; what stands for triangles, or for more points than leaves are worth, does so for all plants at once.
+    bool draws_leaves(float p, float chance) const {
+        const float turn = chance * 256.0f - float(int32_t(chance * 256.0f));
+        return (p < leaves_to_) & (p * (0.75f + 0.5f * turn) >= leaves_from_);
+    }
+    // p; 0 where leaves are never drawn.
+    float leaves_to() const { return leaves_to_; }
+    // Whether they have other counts of vertices than what stands in their place without them.
+    bool leaves_count_apart() const {
+        return leaves_to_ > k_points_a_leaf * full_leaves_ || leaves_to_ > points_;
+    }
+    float full_leaves() const { return full_leaves_; }
 
     // eps_l on the screen >= d', or q = A'_l / (l' d') > 1: all triangles. Else the first q n_l lines, or points.
     Choice choose_lines(const PartDemand& demand, float chance) const {
@@ -164,6 +190,8 @@ class PartRule {
     float line_points_area_m2_;  // in the mean over directions; 0: no points in the place of lines
     float line_points_fill_m_;   // 1 m times that over the lines' mean length and d'
     float splat_px_, line_width_px_, mean_facing_ = 0.0f;
+    float full_leaves_ = 0.0f, least_leaves_ = 0.0f;
+    float leaves_from_ = INFINITY, leaves_to_ = 0.0f;  // p; none are drawn where there are none
     uint32_t triangle_count_, point_count_, line_count_;
 };
 
@@ -180,8 +208,8 @@ void choose_parts(const PartRule& rule, const PartDemands& demands, std::span<co
 
 // The whole decision for one part.
 inline PartChoice choose_part(const PackedPart& part, const PlantView& view, const FrameSettings& settings,
-                              float chance) {
-    const PartRule rule(part, settings);
+                              float chance, LeafLevels leaves = {}) {
+    const PartRule rule(part, settings, leaves);
     const PartDemand demand = rule.demand(project_part(part, view, settings));
     return rule.expand(rule.choose(demand, chance), demand.side_gain);
 }

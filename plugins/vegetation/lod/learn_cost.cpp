@@ -8,7 +8,7 @@ namespace {
 
 // Measured with two cores of lavapipe, at 795x700 with plants of small triangles. Frames soon overrule them; where none
 // tells two kinds apart, their ratio stays.
-constexpr PrimitiveCosts k_usual{8.0, 25.0, 40.0, 12.0};
+constexpr PrimitiveCosts k_usual{8.0, 25.0, 40.0, 12.0, 48.0};
 constexpr double k_ns_in_ms = 1.0e-6;
 
 constexpr double k_remembered = 0.995;     // of what was known in a frame's direction: the last 200 frames
@@ -45,13 +45,13 @@ std::array<double, N> solve(std::array<std::array<double, N>, N> a, std::array<d
 
 double PrimitiveCosts::ms_of(const PrimitiveCounts& counts) const {
     return frame_ms + (triangle_ns * double(counts.triangles) + line_ns * double(counts.lines) +
-                       point_ns * double(counts.points)) *
+                       point_ns * double(counts.points) + leaf_ns * double(counts.leaves)) *
                           k_ns_in_ms;
 }
 
 PrimitiveCosts LearnedCost::costs() const {
     return {k_usual.frame_ms * factors_[0], k_usual.triangle_ns * factors_[1], k_usual.line_ns * factors_[2],
-            k_usual.point_ns * factors_[3]};
+            k_usual.point_ns * factors_[3], k_usual.leaf_ns * factors_[4]};
 }
 
 double LearnedCost::expected_ms(const Terms& usual_ms) const {
@@ -70,7 +70,8 @@ void LearnedCost::learn(const PrimitiveCounts& counts, double measured_ms) {
     if (!std::isfinite(measured_ms) || !(measured_ms > 0.0)) return;
     const Terms usual_ms{k_usual.frame_ms, k_usual.triangle_ns * double(counts.triangles) * k_ns_in_ms,
                          k_usual.line_ns * double(counts.lines) * k_ns_in_ms,
-                         k_usual.point_ns * double(counts.points) * k_ns_in_ms};
+                         k_usual.point_ns * double(counts.points) * k_ns_in_ms,
+                         k_usual.leaf_ns * double(counts.leaves) * k_ns_in_ms};
     const double expected = expected_ms(usual_ms);
 
     // At first, and after the machine has changed, all costs are scaled alike: five frames tell no kinds apart, and the
@@ -128,11 +129,13 @@ uint64_t LearnedCost::vertex_budget_for(double budget_ms, const PrimitiveCounts&
     const PrimitiveCosts cost = costs();
     const double for_plants_ns = (budget_ms - cost.frame_ms) / k_ns_in_ms;
     if (!(for_plants_ns > 0.0)) return 0;
-    const double vertices = 3.0 * double(mix.triangles) + 2.0 * double(mix.lines) + double(mix.points);
-    double vertex_ns = std::max({cost.triangle_ns / 3.0, cost.line_ns / 2.0, cost.point_ns});
+    const double vertices = 3.0 * double(mix.triangles) + 2.0 * double(mix.lines) + double(mix.points) +
+                            4.0 * double(mix.leaves);
+    double vertex_ns =
+        std::max({cost.triangle_ns / 3.0, cost.line_ns / 2.0, cost.point_ns, cost.leaf_ns / 4.0});
     if (vertices > 0.0)
         vertex_ns = (cost.triangle_ns * double(mix.triangles) + cost.line_ns * double(mix.lines) +
-                     cost.point_ns * double(mix.points)) /
+                     cost.point_ns * double(mix.points) + cost.leaf_ns * double(mix.leaves)) /
                     vertices;
     return uint64_t(std::min(for_plants_ns / vertex_ns, k_most_vertices));
 }

@@ -1,5 +1,5 @@
 // What a frame costs on this machine, learned from frames it drew, so that a time budget becomes a vertex budget
-// (DESIGN section 3: budget). ms = frame + triangles, lines and points times a cost each, by recursive least squares.
+// (DESIGN section 3: budget). ms = frame + triangles, lines, points and leaves times a cost each, by recursive least squares.
 // Forgetting is directional (Cao and Schwartz 2000): only what a frame tells about is forgotten for it, so that a view at
 // rest neither blows anything up nor loses what was learned of kinds it does not show.
 // Pure and in double precision: same frames, same bits.
@@ -10,13 +10,13 @@
 namespace coppice {
 
 struct PrimitiveCounts {
-    uint64_t triangles = 0, lines = 0, points = 0;
+    uint64_t triangles = 0, lines = 0, points = 0, leaves = 0;
 };
 
 // All >= 0.
 struct PrimitiveCosts {
     double frame_ms = 0.0;  // whatever is drawn: clear, resolve, what the host adds
-    double triangle_ns = 0.0, line_ns = 0.0, point_ns = 0.0;
+    double triangle_ns = 0.0, line_ns = 0.0, point_ns = 0.0, leaf_ns = 0.0;
     double ms_of(const PrimitiveCounts& counts) const;
 };
 
@@ -29,12 +29,12 @@ class LearnedCost {
     // Before the first frame, two cores of lavapipe's.
     PrimitiveCosts costs() const;
 
-    // Vertices (one a point, two a line, three a triangle) that take budget_ms when drawn in the proportions of `mix`;
+    // Vertices (one a point, two a line, three a triangle, four a leaf) that take budget_ms when drawn in the proportions of `mix`;
     // an empty mix: of the dearest kind. 0 where the frame alone takes as long, or budget_ms is not a number. At most 2^40.
     uint64_t vertex_budget_for(double budget_ms, const PrimitiveCounts& mix) const;
 
   private:
-    static constexpr int k_terms = 4;         // frame, triangles, lines, points
+    static constexpr int k_terms = 5;         // frame, triangles, lines, points, leaves
     static constexpr int k_first_frames = 5;  // of which the median says how fast the machine is
     static constexpr int k_lasting_frames = 8;
     using Terms = std::array<double, k_terms>;

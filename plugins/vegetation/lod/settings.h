@@ -11,9 +11,16 @@ enum class ProjectionMode : uint8_t {
     measured,   // the cook's fit for the direction of view, times its coverage gain
 };
 
+// What stands for leaves between all their triangles and points: fewer and larger leaves (plant/leaf_bands.h).
+enum class FoliageMode : uint8_t {
+    automatic,  // where they were measured to be nearer to the truth than points in the same time (lod/choose_part.h)
+    points,     // nowhere
+    leaves,     // wherever a part has them
+};
+
 enum class RepresentationView : uint8_t {
     lit,
-    kinds,     // colours by kind: triangles green, lines blue, points red
+    kinds,     // colours by kind: triangles green, leaves yellow, lines blue, points red
     coverage,  // plants white, everything else black: for measurements
 };
 
@@ -23,7 +30,7 @@ struct FrameSettings {
     // Of lines alone; 0: that of points. A budget sets it where lines become triangles all at once: at the d' at which they
     // still fit, and what is left goes to points.
     float line_sample_distance_px = 0.0f;
-    // Points + 2 lines + 3 triangles that the plants of a frame may draw; 0: as many as d' asks for. d' is found in each
+    // Points + 2 lines + 3 triangles + 4 leaves that the plants of a frame may draw; 0: as many as d' asks for. d' is found in each
     // frame so that it is met. Not of a view at rest, nor without levels of detail.
     uint64_t vertex_budget = 0;
     // Likewise, in time: as many vertices as were learned to take that long. 0: none; of both budgets the smaller holds.
@@ -33,6 +40,7 @@ struct FrameSettings {
     float splat_factor = 1.0f;  // c_p; the paper says 1.2 to 1.5 (docs/decisions.md)
     ProjectionMode projection = ProjectionMode::measured;
     bool weigh_by_facing = true;  // splats by |n . v|, as leaves are seen; false: all alike, as printed
+    FoliageMode foliage = FoliageMode::automatic;
     bool level_of_detail = true;  // false: every triangle of everything in view
     bool blend = true;            // false: switch from points to triangles at once
     bool occlusion = true;  // false: what is behind the ground is drawn as well; the picture is the same

@@ -10,7 +10,7 @@ namespace coppice {
 static_assert(std::endian::native == std::endian::little, "packed plants are used in place");
 
 inline constexpr char k_plant_magic[4] = {'C', 'P', 'L', 'T'};
-inline constexpr uint32_t k_plant_version = 3;
+inline constexpr uint32_t k_plant_version = 4;
 inline constexpr uint64_t k_plant_block_alignment = 64;
 
 enum PlantBlock : uint32_t {
@@ -20,6 +20,8 @@ enum PlantBlock : uint32_t {
     k_block_point_owners,
     k_block_line_vertices,
     k_block_cells,
+    k_block_crowns,
+    k_block_leaves,
     k_block_count
 };
 
@@ -39,9 +41,9 @@ struct PlantFileHead {
     uint32_t dropped_triangles, dropped_vertices;
     uint32_t reserved[6];
     PlantBlockPlace blocks[k_block_count];
-    uint64_t reserved_end[4];
+    uint64_t reserved_end[6];
 };
-static_assert(sizeof(PlantFileHead) == 5 * 64);
+static_assert(sizeof(PlantFileHead) == 6 * 64);
 
 inline constexpr uint64_t padded_to_block(uint64_t bytes) {
     return (bytes + k_plant_block_alignment - 1) / k_plant_block_alignment * k_plant_block_alignment;

@@ -1,9 +1,12 @@
+#include <algorithm>
 #include <atomic>
 #include <bit>
 #include <cstring>
+#include <vector>
 #include "plugins/vegetation/plant/check_part.h"
 #include "plugins/vegetation/plant/description.h"
 #include "plugins/vegetation/plant/format.h"
+#include "plugins/vegetation/plant/leaf_bands.h"
 #include "plugins/vegetation/plant/plant.h"
 #include "runtime/core/hash.h"
 #include "runtime/core/jobs.h"
@@ -13,10 +16,12 @@ namespace {
 
 constexpr const char* k_remedy = "packed plants are a cache: cook the plant again";
 constexpr const char* k_block_names[k_block_count] = {"parts",        "triangle vertices", "points",
-                                                      "point owners", "line vertices",     "cells"};
+                                                      "point owners", "line vertices",     "cells",
+                                                      "crowns",       "leaves"};
 constexpr uint64_t k_item_bytes[k_block_count] = {sizeof(PackedPart),   sizeof(PackedVertex),
                                                   sizeof(PackedVertex), sizeof(uint32_t),
-                                                  sizeof(PackedVertex), sizeof(PackedPart)};
+                                                  sizeof(PackedVertex), sizeof(PackedPart),
+                                                  sizeof(PackedCrown),  sizeof(PackedLeaf)};
 
 bool positions_usable(std::span<const PackedVertex> vertices) {
     std::atomic<bool> usable{true};
@@ -87,6 +92,48 @@ const char* fault_of_cells(const Plant& plant, PartBegin& begin, size_t& at) {
     return nullptr;
 }
 
+// Of a band's list: in its order of removal nothing is removed before it is born, and each level of the band but the first
+// has one leaf that is born with it, so that every level has as many leaves as it says.
+bool births_fit(std::span<const PackedLeaf> list, const LeafBand& band, uint32_t full_count) {
+    const uint32_t first_level = full_count - band.most, born_in_band = band.most - band.fewest;
+    std::vector<bool> born(born_in_band, false);
+    for (size_t i = 0; i < list.size(); ++i) {
+        const uint32_t level = list[i].birth_level;
+        if (level <= first_level) continue;
+        const uint32_t born_at = level - first_level - 1;
+        if (born_at >= born_in_band || born[born_at] || (i / 2 < born_in_band && born_at >= i / 2)) return false;
+        born[born_at] = true;
+    }
+    return std::find(born.begin(), born.end(), false) == born.end();
+}
+
+// Null where the crowns share out the leaves, else what is wrong with crown `at`.
+const char* fault_of_crowns(const Plant& plant, size_t& at) {
+    uint64_t next = 0;
+    for (at = 0; at < plant.crowns.size(); ++at) {
+        const PackedCrown& crown = plant.crowns[at];
+        if (crown.part >= plant.parts.size() || (at > 0 && plant.crowns[at - 1].part >= crown.part))
+            return "of no part, or not behind that of the part before";
+        if (plant.parts[crown.part].kind != PackedPartKind::points) return "of a part of lines";
+        if (crown.least_count == 0 || crown.least_count > crown.full_count ||
+            crown.full_count > k_most_crown_leaves)
+            return "levels that have no leaf or more than there are";
+        const uint64_t count = banded_leaf_count(crown.full_count, crown.least_count);
+        if (crown.first_leaf != next || count > plant.leaves.size() - next)
+            return "leaves that do not follow the crown before, or outside the file";
+        LeafBand band = first_band(crown.full_count, crown.least_count);
+        while (true) {
+            if (!births_fit(plant.leaves.subspan(next + band.first, band.size()), band, crown.full_count))
+                return "a leaf that is removed before it is born, or two of one birth";
+            if (band.is_last(crown.least_count)) break;
+            band = next_band(band, crown.least_count);
+        }
+        next += count;
+    }
+    at = plant.crowns.size();
+    return next == plant.leaves.size() ? nullptr : "leaves that belong to no crown";
+}
+
 Result<Plant> view_plant(std::span<const std::byte> bytes, const std::string& file) {
     if (bytes.size() < sizeof(PlantFileHead)) {
         if (bytes.size() < 4 || std::memcmp(bytes.data(), k_plant_magic, 4) != 0)
@@ -148,6 +195,8 @@ Result<Plant> view_plant(std::span<const std::byte> bytes, const std::string& fi
     plant.point_owners = span_of(k_block_point_owners, static_cast<const uint32_t*>(nullptr));
     plant.line_vertices = span_of(k_block_line_vertices, static_cast<const PackedVertex*>(nullptr));
     plant.cells = span_of(k_block_cells, static_cast<const PackedPart*>(nullptr));
+    plant.crowns = span_of(k_block_crowns, static_cast<const PackedCrown*>(nullptr));
+    plant.leaves = span_of(k_block_leaves, static_cast<const PackedLeaf*>(nullptr));
     plant.dropped_triangles = head.dropped_triangles;
     plant.dropped_vertices = head.dropped_vertices;
 
@@ -169,6 +218,9 @@ Result<Plant> view_plant(std::span<const std::byte> bytes, const std::string& fi
         return wrong("cells[" + std::to_string(cell) + "]", fault);
     if (!all_triangles || begin.point != plant.points.size() || begin.line != plant.line_vertices.size() / 2)
         return wrong("parts", "triangles, points or lines that belong to no part");
+    size_t crown = 0;
+    if (const char* fault = fault_of_crowns(plant, crown))
+        return wrong("crowns[" + std::to_string(crown) + "]", fault);
     constexpr const char* k_far = "a position that is not finite, or further than 100 km from the origin";
     if (!positions_usable(plant.triangle_vertices)) return wrong("triangle vertices", k_far);
     if (!positions_usable(plant.points)) return wrong("points", k_far);

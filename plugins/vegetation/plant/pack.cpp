@@ -42,6 +42,8 @@ std::vector<std::byte> pack_plant(const PlantBlocks& plant) {
         {plant.point_owners.data(), plant.point_owners.size(), sizeof(uint32_t)},
         {plant.line_vertices.data(), plant.line_vertices.size(), sizeof(PackedVertex)},
         {plant.cells.data(), plant.cells.size(), sizeof(PackedPart)},
+        {plant.crowns.data(), plant.crowns.size(), sizeof(PackedCrown)},
+        {plant.leaves.data(), plant.leaves.size(), sizeof(PackedLeaf)},
     };
     head.file_bytes = sizeof head;
     for (uint32_t b = 0; b < k_block_count; ++b) {

@@ -18,6 +18,8 @@ struct PlantBlocks {
     std::vector<uint32_t> point_owners;
     std::vector<PackedVertex> line_vertices;
     std::vector<PackedPart> cells;
+    std::vector<PackedCrown> crowns;
+    std::vector<PackedLeaf> leaves;
     uint32_t dropped_triangles = 0;
     uint32_t dropped_vertices = 0;
 };

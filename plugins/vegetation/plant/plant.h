@@ -1,6 +1,6 @@
 // A packed plant in memory: a view into one mapped .plant file (or into a buffer of the same bytes), used in
 // place. Format, little-endian: header, parts, then one block each of triangle vertices, points, point
-// owners, line vertices and cells; every block is checksummed (XXH3-64) and starts at a multiple of 64 bytes.
+// owners, line vertices, cells, crowns and their leaves; every block is checksummed (XXH3-64) and starts at a multiple of 64 bytes.
 // pack.cpp writes, load.cpp reads.
 #pragma once
 #include <array>
@@ -156,6 +156,36 @@ inline float mean_projected_area_m2(const PackedPart& part) {
 // Of the lines' length likewise: a line of random direction shows pi / 4 of its own (ERRATA 2).
 inline float mean_projected_length_m(const PackedPart& part) { return 0.25f * k_pi * part.line_length_m; }
 
+// A leaf of a crown at some of its levels of detail (leaf_bands.h): triangles (0, 1, 2) and (0, 2, 3) of four corners. 32
+// bytes, two fetches of a kernel.
+struct PackedLeaf {
+    std::array<uint16_t, 12> corners;  // x y z each, in steps of the part's LeafGrid
+    uint32_t surface;                  // surface.h; the normal that both triangles are lit by, in plant space
+    uint32_t birth_level;              // from which on it is there
+};
+static_assert(sizeof(PackedLeaf) == 32);
+
+// The leaves of one part, by bands. At level c of full_count - least_count at most, full_count - c are drawn.
+struct PackedCrown {
+    uint32_t part;
+    uint32_t first_leaf;  // banded_leaf_count of them
+    uint32_t full_count, least_count;
+};
+
+// Where a part's leaves have their corners: within its bounds, to 1 / 65535 of these.
+struct LeafGrid {
+    vec3 origin_plant, step_m;  // steps > 0
+};
+inline LeafGrid leaf_grid(const PackedPart& part) {
+    LeafGrid grid;
+    for (int axis = 0; axis < 3; ++axis) {
+        const float size_m = part.bounds_max[axis] - part.bounds_min[axis];
+        grid.origin_plant[axis] = part.bounds_min[axis];
+        grid.step_m[axis] = (size_m > 1.0e-6f ? size_m : 1.0e-6f) / 65535.0f;
+    }
+    return grid;
+}
+
 struct Plant {
     std::string name;
     Box bounds_plant;
@@ -174,6 +204,8 @@ struct Plant {
     // its order, and stand behind all parts'. Such a part itself keeps the points that far views need, and of
     // its triangles, which are sorted by cell, only all can be drawn.
     std::span<const PackedPart> cells;
+    std::span<const PackedCrown> crowns;  // by part, at most one each: of parts with leaves enough
+    std::span<const PackedLeaf> leaves;   // crown after crown
     uint32_t dropped_triangles = 0;          // zero area or not finite, left out by the cook
     uint32_t dropped_vertices = 0;           // used by no triangle
     std::shared_ptr<const MappedFile> file;  // keeps the spans alive; or:

@@ -19,8 +19,9 @@ struct FrameReport {
     uint64_t vertex_budget = 0;                     // that d' was found for; 0: none
     uint64_t cloud_plants = 0;                      // that clouds stood for
     uint64_t triangles = 0, lines = 0, points = 0;  // drawn, of plants
+    uint64_t leaves = 0;                            // of crowns at a level of detail, likewise
     uint64_t terrain_triangles = 0;
-    uint64_t vertices = 0;         // points + 2 lines + 3 triangles, of plants
+    uint64_t vertices = 0;         // points + 2 lines + 3 triangles + 4 leaves, of plants
     uint64_t full_triangles = 0;   // of the visible plants, had all been drawn
     uint64_t scene_triangles = 0;  // of the whole scene
     uint64_t work_entries = 0;     // of the work list

@@ -1,0 +1,67 @@
+#include "plugins/vegetation/cook/pack_leaves.h"
+
+#include <algorithm>
+#include "plugins/vegetation/cook/collapse_leaves.h"
+#include "plugins/vegetation/cook/find_leaves.h"
+#include "plugins/vegetation/cook/weld_positions.h"
+#include "plugins/vegetation/plant/leaf_bands.h"
+#include "runtime/core/hash.h"
+#include "runtime/core/jobs.h"
+
+namespace coppice {
+namespace {
+
+PackedLeaf pack_leaf(const Leaf& leaf, uint32_t birth_level, const LeafGrid& grid, const Surface& surface,
+                     uint32_t dither) {
+    PackedLeaf packed{{}, encode_surface(surface, dither), birth_level};
+    for (size_t k = 0; k < 4; ++k)
+        for (int axis = 0; axis < 3; ++axis) {
+            const float steps =
+                (leaf.corners_plant[k][axis] - grid.origin_plant[axis]) / grid.step_m[axis] + 0.5f;
+            packed.corners[3 * k + size_t(axis)] = uint16_t(std::clamp(steps, 0.0f, 65535.0f));
+        }
+    return packed;
+}
+
+}  // namespace
+
+PackedLeaves pack_leaves(const PartDescription& part, const PackedPart& packed, const OpennessGrid& openness,
+                         uint32_t dither_seed) {
+    const std::vector<Leaf> crown = find_leaves(part, weld_positions(part.vertices)).leaves;
+    if (crown.size() < k_fewest_crown_leaves || crown.size() > k_most_crown_leaves) return {};
+    const uint32_t full_count = uint32_t(crown.size());
+    LeafCollapseSettings settings;
+    settings.target_count = std::max(k_least_leaves, full_count / k_leaves_a_least_leaf);
+    const std::vector<LeafCollapse> collapses = collapse_leaves(crown, settings);
+    PackedLeaves result{full_count, full_count - uint32_t(collapses.size()), {}};
+
+    const uint32_t total = full_count + uint32_t(collapses.size());
+    const LeafGrid grid = leaf_grid(packed);
+    std::vector<PackedLeaf> leaves(total);
+    parallel_for(total, 1024, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; ++i) {
+            const Leaf leaf = i < full_count ? crown[i] : collapsed_leaf(crown, collapses[i - full_count]);
+            vec3 middle(0);
+            for (const vec3& corner : leaf.corners_plant) middle += corner * 0.25f;
+            const Surface surface{leaf.normal_plant, leaf.color_linear, openness.at(middle), part.leaf};
+            leaves[i] = pack_leaf(leaf, level_of_birth(uint32_t(i), full_count), grid, surface,
+                                  mix_bits(uint32_t(i) ^ dither_seed));
+        }
+    });
+
+    std::vector<bool> gone(total, false);
+    result.leaves.reserve(banded_leaf_count(full_count, result.least_count));
+    uint32_t level = 0;
+    for (LeafBand band = first_band(full_count, result.least_count);; band = next_band(band, result.least_count)) {
+        for (const uint32_t last_level = full_count - band.fewest; level < last_level; ++level)
+            for (uint32_t removed : collapses[level].removed) {
+                result.leaves.push_back(leaves[removed]);
+                gone[removed] = true;
+            }
+        for (uint32_t i = 0; i < full_count + level; ++i)
+            if (!gone[i]) result.leaves.push_back(leaves[i]);
+        if (band.is_last(result.least_count)) return result;
+    }
+}
+
+}  // namespace coppice

@@ -1,0 +1,23 @@
+// A part's crown as the packed plant holds it: its leaves, joined two by two, in bands (plant/leaf_bands.h).
+#pragma once
+#include <vector>
+#include "plugins/vegetation/cook/openness.h"
+#include "plugins/vegetation/plant/description.h"
+#include "plugins/vegetation/plant/plant.h"
+
+namespace coppice {
+
+inline constexpr uint32_t k_fewest_crown_leaves = 64;  // of a part that is worth a crown
+// A crown's last level: from farther away points are better, and cover as much (decision 36).
+inline constexpr uint32_t k_least_leaves = 16, k_leaves_a_least_leaf = 64;
+
+struct PackedLeaves {
+    uint32_t full_count = 0, least_count = 0;  // 0: fewer than k_fewest_crown_leaves
+    std::vector<PackedLeaf> leaves;
+};
+
+// packed: the part's bounds, within which the leaves stay. Requires a clean mesh (clean_mesh.h). Pure.
+PackedLeaves pack_leaves(const PartDescription& part, const PackedPart& packed, const OpennessGrid& openness,
+                         uint32_t dither_seed);
+
+}  // namespace coppice

@@ -28,7 +28,8 @@ PackedLeaf pack_leaf(const Leaf& leaf, uint32_t birth_level, const LeafGrid& gri
 PackedLeaves pack_leaves(const PartDescription& part, const PackedPart& packed, const OpennessGrid& openness,
                          uint32_t dither_seed) {
     const std::vector<Leaf> crown = find_leaves(part, weld_positions(part.vertices)).leaves;
-    if (crown.size() < k_fewest_crown_leaves || crown.size() > k_most_crown_leaves) return {};
+    static_assert(k_most_packed_leaves <= k_most_crown_leaves);
+    if (crown.size() < k_fewest_crown_leaves || crown.size() > k_most_packed_leaves) return {};
     const uint32_t full_count = uint32_t(crown.size());
     LeafCollapseSettings settings;
     settings.target_count = std::max(k_least_leaves, full_count / k_leaves_a_least_leaf);

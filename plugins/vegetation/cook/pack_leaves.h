@@ -7,12 +7,14 @@
 
 namespace coppice {
 
-inline constexpr uint32_t k_fewest_crown_leaves = 64;  // of a part that is worth a crown
+// Of a part that is worth a crown. One of more leaves is a large plant's, which is drawn in cells where a leaf is worth
+// several points, and its levels would take 96 bytes a leaf for nothing.
+inline constexpr uint32_t k_fewest_crown_leaves = 64, k_most_packed_leaves = 1u << 17;
 // A crown's last level: from farther away points are better, and cover as much (decision 36).
 inline constexpr uint32_t k_least_leaves = 16, k_leaves_a_least_leaf = 64;
 
 struct PackedLeaves {
-    uint32_t full_count = 0, least_count = 0;  // 0: fewer than k_fewest_crown_leaves
+    uint32_t full_count = 0, least_count = 0;  // 0: not worth a crown
     std::vector<PackedLeaf> leaves;
 };
 

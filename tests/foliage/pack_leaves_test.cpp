@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <algorithm>
+#include <cmath>
 #include "plugins/vegetation/cook/collapse_leaves.h"
 #include "plugins/vegetation/cook/find_leaves.h"
 #include "plugins/vegetation/cook/weld_positions.h"
@@ -43,7 +44,7 @@ TEST(PackLeaves, EveryLevelIsWhatReplayingGives) {
     const PackedPart packed = bounds_of(part);
     const std::vector<PartDescription> parts{part};
     const OpennessGrid openness(parts, {false});
-    const PackedLeaves leaves = pack_leaves(part, packed, openness, 1);
+    const PackedLeaves leaves = pack_leaves(part, packed, openness, 1, INFINITY);
     ASSERT_EQ(leaves.full_count, 700u);
     EXPECT_EQ(leaves.least_count, 16u);
     ASSERT_EQ(leaves.leaves.size(), banded_leaf_count(700, 16));
@@ -80,6 +81,42 @@ TEST(PackLeaves, EveryLevelIsWhatReplayingGives) {
         EXPECT_EQ(drawn.size(), count);
         EXPECT_TRUE(drawn == expected) << count;
     }
+}
+
+TEST(PackLeaves, LevelsEndWhereTheyCoverOtherwise) {
+    const PartDescription part = part_of(made_crown(700, 5));
+    const std::vector<PartDescription> parts{part};
+    const OpennessGrid openness(parts, {false});
+    auto least_count = [&](float most_error) {
+        return pack_leaves(part, bounds_of(part), openness, 1, most_error).least_count;
+    };
+    EXPECT_EQ(least_count(0.0f), 700u);  // quads are what they stand for, joined ones are not
+    EXPECT_EQ(least_count(INFINITY), 16u);
+    const uint32_t near = least_count(0.005f), far = least_count(0.03f);
+    EXPECT_LE(far, near);
+    EXPECT_LT(far, 700u);
+}
+
+// Of stars, which quads of the same area cover otherwise where they lie over each other.
+TEST(PackLeaves, LeavesThatQuadsDoNotStandForAreNoCrown) {
+    PartDescription part;
+    part.leaf = true;
+    for (uint32_t leaf = 0; leaf < 100; ++leaf) {
+        const vec3 middle(0.02f * float(leaf % 10), 0.02f * float(leaf / 10), 0.001f * float(leaf));
+        for (uint32_t ray = 0; ray < 6; ++ray) {
+            const float turn = float(ray) * (k_pi / 3.0f), width = 0.05f;
+            const uint32_t first = uint32_t(part.vertices.size());
+            for (const vec3& corner :
+                 {middle, middle + vec3(portable_cos(turn - width), portable_sin(turn - width), 0.0f),
+                  middle + vec3(portable_cos(turn + width), portable_sin(turn + width), 0.0f)})
+                part.vertices.push_back({corner, vec3(0, 0, 1), vec3(0.2f)});
+            part.indices.insert(part.indices.end(), {first, first + 1, first + 2});
+        }
+    }
+    const std::vector<PartDescription> parts{part};
+    const OpennessGrid openness(parts, {false});
+    EXPECT_EQ(pack_leaves(part, bounds_of(part), openness, 1).full_count, 0u);
+    EXPECT_EQ(pack_leaves(part, bounds_of(part), openness, 1, INFINITY).full_count, 100u);
 }
 
 TEST(PackLeaves, FewLeavesAreNoCrown) {

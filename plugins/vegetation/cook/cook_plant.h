@@ -15,7 +15,7 @@
 namespace coppice {
 
 // Goes into the key of cached plants: raise it when the bytes of an unchanged description change.
-inline constexpr uint32_t k_cook_version = 16;
+inline constexpr uint32_t k_cook_version = 17;
 
 struct CookSettings {
     PointSampler sampler = PointSampler::automatic;

@@ -132,9 +132,9 @@ class DrawnGround {
     }
 
     bool on_picture(dvec3 point) const {
-        for (const vec3& normal : frustum_.side_normals)
-            if (glm::dot(dvec3(normal), point) < 0.0) return false;
-        return glm::dot(dvec3(frustum_.forward), point) >= double(frustum_.near_m);
+        for (uint32_t i = 0; i < frustum_.plane_count; ++i)
+            if (glm::dot(dvec3(frustum_.planes[i]), point) + double(frustum_.planes[i].w) < 0.0) return false;
+        return true;
     }
 
     uint32_t deepest_level = 0;

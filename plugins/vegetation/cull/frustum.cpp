@@ -16,28 +16,28 @@ Frustum make_frustum(const Camera& camera, uint32_t width_px, uint32_t height_px
     frustum.focal_px = float(std::max(height_px, 1u)) / (2.0f * tangent_y);
     frustum.corner_cos = 1.0f / std::sqrt(1.0f + tangent_x * tangent_x + tangent_y * tangent_y);
     auto side = [](vec3 axis, vec3 forward, float tangent) {
-        return normalize_or(axis + forward * tangent, forward);  // dot(n, x axis_part + forward) >= 0 inside
+        return vec4(normalize_or(axis + forward * tangent, forward), 0.0f);
     };
-    frustum.side_normals[0] = side(frustum.right, frustum.forward, tangent_x);
-    frustum.side_normals[1] = side(-frustum.right, frustum.forward, tangent_x);
-    frustum.side_normals[2] = side(frustum.up, frustum.forward, tangent_y);
-    frustum.side_normals[3] = side(-frustum.up, frustum.forward, tangent_y);
+    frustum.plane_count = Frustum::k_picture_planes;
+    frustum.planes[0] = vec4(frustum.forward, -frustum.near_m);
+    frustum.planes[1] = side(frustum.right, frustum.forward, tangent_x);
+    frustum.planes[2] = side(-frustum.right, frustum.forward, tangent_x);
+    frustum.planes[3] = side(frustum.up, frustum.forward, tangent_y);
+    frustum.planes[4] = side(-frustum.up, frustum.forward, tangent_y);
     return frustum;
 }
 
 Visibility see_box(const Frustum& frustum, const Box& box) {
     vec3 center = box.center(), half = box.size() * 0.5f;
     bool inside = true;
-    auto outside_of = [&](vec3 normal, float offset) {
-        float distance = glm::dot(normal, center) - offset;
-        float reach =
+    for (uint32_t i = 0; i < frustum.plane_count; ++i) {
+        const vec3 normal = vec3(frustum.planes[i]);
+        const float distance = glm::dot(normal, center) + frustum.planes[i].w;
+        const float reach =
             std::fabs(normal.x) * half.x + std::fabs(normal.y) * half.y + std::fabs(normal.z) * half.z;
+        if (distance < -reach) return Visibility::outside;
         inside = inside && distance >= reach;
-        return distance < -reach;
-    };
-    if (outside_of(frustum.forward, frustum.near_m)) return Visibility::outside;
-    for (const vec3& normal : frustum.side_normals)
-        if (outside_of(normal, 0.0f)) return Visibility::outside;
+    }
     return inside ? Visibility::inside : Visibility::across;
 }
 

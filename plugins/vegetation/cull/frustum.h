@@ -1,14 +1,19 @@
-// What the camera can see, as planes through the viewer. All coordinates are camera-relative: the viewer is the
-// origin, the axes are the world's.
+// What the camera can see, as planes. All coordinates are camera-relative: the viewer is the origin, the axes are the
+// world's.
 #pragma once
+#include <array>
 #include <cmath>
 #include "plugins/vegetation/components.h"
 
 namespace coppice {
 
 struct Frustum {
+    static constexpr uint32_t k_picture_planes = 5, k_most_planes = 13;
     vec3 right, up, forward;  // the camera's axes, unit
-    vec3 side_normals[4];  // left, right, bottom, top; unit, pointing inside; all planes contain the origin
+    // (n, o): dot(n, p) + o >= 0 inside; n unit. Of a picture near, left, right, bottom, top, the last four through the origin;
+    // of what throws shadows into it those of cull/caster_frustum.h.
+    std::array<vec4, k_most_planes> planes;
+    uint32_t plane_count;
     float near_m;
     float focal_px;    // image height / (2 tan(fov / 2))
     float corner_cos;  // of the angle between the axis and the image's corners
@@ -18,9 +23,8 @@ Frustum make_frustum(const Camera& camera, uint32_t width_px, uint32_t height_px
 
 // Conservative: false only where nothing of the sphere can be seen.
 inline bool sees_sphere(const Frustum& frustum, vec3 center, float radius) {
-    if (glm::dot(frustum.forward, center) < frustum.near_m - radius) return false;
-    for (const vec3& normal : frustum.side_normals)
-        if (glm::dot(normal, center) < -radius) return false;
+    for (uint32_t i = 0; i < frustum.plane_count; ++i)
+        if (glm::dot(vec3(frustum.planes[i]), center) + frustum.planes[i].w < -radius) return false;
     return true;
 }
 

@@ -134,7 +134,7 @@ bool Horizon::choose_levels(const Terrain& terrain, const Place& place, const Fr
 
 // The frustum seen from above is a wedge, or all directions if the vertical is in view.
 void Horizon::see_columns(const Frustum& frustum) {
-    const vec3* sides = frustum.side_normals;
+    const vec4* sides = &frustum.planes[1];
     bool up = true, down = true;
     for (int s = 0; s < 4; ++s) {
         up = up && sides[s].y > -0.01f;
@@ -142,7 +142,7 @@ void Horizon::see_columns(const Frustum& frustum) {
     }
     Ray low{}, high{};
     for (int corner = 0; corner < 4; ++corner) {
-        vec3 ray = glm::cross(sides[corner / 2], sides[2 + corner % 2]);
+        vec3 ray = glm::cross(vec3(sides[corner / 2]), vec3(sides[2 + corner % 2]));
         if (glm::dot(ray, frustum.forward) < 0.0f) ray = -ray;
         const Ray flat{ray.x, ray.z};
         if (corner == 0 || cross(low, flat) < 0.0f) low = flat;

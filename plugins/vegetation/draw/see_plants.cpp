@@ -27,7 +27,7 @@ struct Block {
     Column x, y, z, scale;                  // of the foot, camera-relative
     Column turn_x, turn_y, turn_z, turn_w;  // PlantTurn, as a unit quaternion
     std::array<uint32_t, k_block> index;    // in the run
-    Column reach_m;                         // into the view, past the nearest plane; < 0: outside
+    Column reach_m;                         // into the view, past the plane it is nearest to; < 0: outside
     Column center_x, center_y, center_z;    // of the sphere that holds the plant
     Column radius_m, distance_m;
     Column direction_x, direction_y, direction_z, pixels_per_meter;
@@ -36,14 +36,14 @@ struct Block {
 // How far spheres reach into the view.
 inline void reach_into_view(const Frustum& frustum, const float* x, const float* y, const float* z,
                             const float* radius_m, float* reach_m, size_t count) {
-    const vec3 f = frustum.forward;
-    for (size_t i = 0; i < count; ++i)
-        reach_m[i] = f.x * x[i] + f.y * y[i] + f.z * z[i] - frustum.near_m + radius_m[i];
-    for (const vec3& n : frustum.side_normals)
+    for (size_t i = 0; i < count; ++i) reach_m[i] = INFINITY;
+    for (uint32_t plane = 0; plane < frustum.plane_count; ++plane) {
+        const vec4 n = frustum.planes[plane];
         for (size_t i = 0; i < count; ++i) {
-            const float side_m = n.x * x[i] + n.y * y[i] + n.z * z[i] + radius_m[i];
+            const float side_m = n.x * x[i] + n.y * y[i] + n.z * z[i] + n.w + radius_m[i];
             reach_m[i] = side_m < reach_m[i] ? side_m : reach_m[i];
         }
+    }
 }
 
 // Takes the plants [first, first + count) of a run, without those that a sphere around the foot shows to be outside.

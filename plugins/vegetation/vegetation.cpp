@@ -16,6 +16,7 @@
 #include "plugins/vegetation/cull/list_grounds.h"
 #include "plugins/vegetation/cull/list_tiles.h"
 #include "plugins/vegetation/draw/expand_ground.h"
+#include "plugins/vegetation/draw/frame_casters.h"
 #include "plugins/vegetation/draw/frame_plants.h"
 #include "plugins/vegetation/draw/rasteriser.h"
 #include "plugins/vegetation/draw/tile_residency.h"
@@ -387,14 +388,28 @@ class VegetationSystems final : public Vegetation {
         if (settled_) return;
         double begin = now_ms();
         if (rested_ == 0) last_solved_px_ = budget_ > 0 ? solve(tiles, plants) : frame_.sample_distance_px;
+        casters_.see(tiles, plants, geometry_, grounds_, frustum_, camera_.position_world, light_, drawn_,
+                     scene_bounds());
         const size_t run_count = tile_list_.runs().size();
         // The first part is the terrain's: should memory run out, the ground stays. The last one is the clouds'.
-        work_.begin(run_count + 2);
+        work_.begin(run_count + 2 + casters_.part_count(), casters_.part_count());
         frame_plants_.draw(tile_list_, geometry_, frustum_, drawn_, resting_.index, work_, 1);
         report_.terrain_triangles = ground_expander_.expand(ground_list_.in_view(), geometry_, frustum_,
                                                             ground_error_px(drawn_), work_.part(0));
+        casters_.draw(geometry_, drawn_, resting_.index, work_, run_count + 2);
         if (residency_) residency_->wish(tile_list_.wishes());
         report_.lod_ms = now_ms() - begin;
+    }
+
+    // All that there is, relative to the camera.
+    Box scene_bounds() const {
+        Box bounds = tile_list_.bounds_camera();
+        if (!grounds_.empty()) {
+            const vec3 space = vec3(-camera_.position_world);
+            bounds.include(grounds_[0].bounds.min + space);
+            bounds.include(grounds_[0].bounds.max + space);
+        }
+        return bounds;
     }
 
     void write_work_list() {
@@ -416,10 +431,15 @@ class VegetationSystems final : public Vegetation {
                 size.entries > rasteriser_->entries(slot_).size())
                 refused_entries_ = std::min(refused_entries_, size.entries);
         }
+        if (auto map = rasteriser_->make_shadow_map(casters_.side_texels()); !map) {
+            if (!std::exchange(map_refused_, true)) log_warning("{}", to_string(map.error()));
+            casters_.drop();
+        }
         layout_ = work_.gather(rasteriser_->instances(slot_), rasteriser_->entries(slot_));
         rasteriser_->set_frame(
             slot_, layout_, camera_, light_,
-            {drawn_.view, resting_.shift_px, keep_ ? resting_.new_share : 0.0f, resting_.filter_radius_px});
+            {drawn_.view, resting_.shift_px, keep_ ? resting_.new_share : 0.0f, resting_.filter_radius_px},
+            {casters_.side_texels(), casters_.view()});
         report_.write_ms = now_ms() - begin;
     }
 
@@ -503,6 +523,8 @@ class VegetationSystems final : public Vegetation {
     GroundList ground_list_;
     GroundExpander ground_expander_;
     FramePlants frame_plants_;
+    FrameCasters casters_;
+    bool map_refused_ = false;  // there is no room for the shadow map
     static constexpr float k_list_reach = 1.25f;
     float listed_px_ = 0.0f,
           spread_for_px_ = 0.0f;   // d' that the tiles were listed for, and the largest for what is hidden

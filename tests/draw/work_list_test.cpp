@@ -34,7 +34,7 @@ TEST(WorkList, EveryPrimitiveStandsInOneEntry) {
     std::multiset<uint32_t> found;
     size_t kind = size_t(WorkKind::points_1);
     for (bool lane : {false, true}) {
-        WorkRange range = lane ? layout.lanes[kind] : layout.groups[kind];
+        WorkRange range = lane ? layout.picture.lanes[kind] : layout.picture.groups[kind];
         for (uint32_t e = range.first_entry; e < range.first_entry + range.entry_count; ++e) {
             EXPECT_LT(entries[e].instance, layout.instance_count);
             if (lane) {
@@ -60,7 +60,7 @@ TEST(WorkList, KindsFollowSizeAndBlend) {
     WorkList::Layout layout = work.gather(instances, entries);
     for (WorkKind kind :
          {WorkKind::points_1, WorkKind::points_2, WorkKind::points_any, WorkKind::points_blend})
-        EXPECT_EQ(layout.groups[size_t(kind)].entry_count, 1u);
+        EXPECT_EQ(layout.picture.groups[size_t(kind)].entry_count, 1u);
     EXPECT_EQ(part.points, 400u);
 }
 

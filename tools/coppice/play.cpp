@@ -143,6 +143,25 @@ void add_play(CLI::App& app, Command& chosen) {
                      "lit, or kinds: triangles green, leaves yellow, lines blue, points red")
         ->transform(CLI::CheckedTransformer(views).description(""))
         ->default_str("lit");
+    const std::map<std::string, ShadowKind> shadow_kinds{{"none", ShadowKind::none},
+                                                         {"uniform", ShadowKind::uniform},
+                                                         {"perspective", ShadowKind::perspective},
+                                                         {"light-space", ShadowKind::light_space}};
+    play->add_option("--shadows", options.settings.shadows,
+                     "The sun's shadow map: none, uniform, perspective or light-space")
+        ->transform(CLI::CheckedTransformer(shadow_kinds).description(""))
+        ->default_str("none");
+    play->add_option("--shadow-size", options.settings.shadow_side_texels, "Texels of a side of the shadow map")
+        ->check(CLI::Range(16, 16384))
+        ->capture_default_str();
+    play->add_option("--shadow-distance", options.settings.shadow_distance_m,
+                     "Metres along the view up to which shadows are seen")
+        ->check(CLI::Range(1.0, 1e6))
+        ->capture_default_str();
+    play->add_option("--shadow-coarseness", options.settings.shadow_coarseness,
+                     "d' of what throws shadows over that of what is seen")
+        ->check(CLI::Range(0.1, 100.0))
+        ->capture_default_str();
     play->add_flag("--full", command->full, "Every triangle: no level of detail");
     play->add_flag("--compare-full", options.compare_full,
                    "Also draw some of the frames with every triangle, in the same run");

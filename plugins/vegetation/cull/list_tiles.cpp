@@ -156,6 +156,7 @@ void TileList::list(const Tiles& tiles, const Plants& plants, const Frustum& fru
     wishes_.clear();
     tile_count = expanded_tile_count = touched_tile_count = hidden_tile_count = stand_in_count = 0;
     plant_count = 0;
+    bounds_camera_ = {};
     tile_of_row_ = {};
     tiles.each_chunk(
         [&](const ChunkView&, std::span<const Tile> some_tiles, std::span<const TileLevels> levels) {
@@ -164,6 +165,8 @@ void TileList::list(const Tiles& tiles, const Plants& plants, const Frustum& fru
         });
     if (tile_of_row_.empty()) return;
     plant_count = tile_of_row_[0].plant_count;
+    const vec3 origin = vec3(tile_of_row_[0].origin_world - camera_world);
+    bounds_camera_ = {tile_of_row_[0].bounds_tile.min + origin, tile_of_row_[0].bounds_tile.max + origin};
     collect_plants(plants);
 
     pending_.assign(1, {0, false, true, false, -camera_world, settings.spread_px});

@@ -59,6 +59,8 @@ class TileList {
     void list(const Tiles& tiles, const Plants& plants, const Frustum& frustum, dvec3 camera_world,
               const Settings& settings);
 
+    // Of all that the last list could have had in view; empty: there are no tiles.
+    const Box& bounds_camera() const { return bounds_camera_; }
     std::span<const PlantRun> runs() const { return runs_; }
     std::span<const CloudTile> clouds() const { return clouds_; }
     // Of tiles that are streamed; the same block may be wished for from several places.
@@ -113,6 +115,7 @@ class TileList {
     void visit(Pending at, const Frustum& frustum, const Settings& settings);
     void make_runs();
 
+    Box bounds_camera_;
     std::span<const Tile> tile_of_row_;
     std::span<const TileLevels> levels_of_row_;
     std::vector<TilePlants> plants_of_row_;

@@ -1,6 +1,6 @@
 // The light model, linear radiance.
 // A leaf shows the side towards the viewer; light that falls on its other side comes through, tinted by it twice.
-// Openness, the share of sky a place sees past its own plant, weighs the sky's light, and the sun's in the mean.
+// Openness, the share of sky a place sees past its own plant, weighs the sky's light.
 #ifndef COPPICE_LIGHT_GLSL
 #define COPPICE_LIGHT_GLSL
 
@@ -11,7 +11,13 @@ struct Light {
     vec4 horizon_color;
     vec4 ground_color;
     vec4 haze_color;
+    // Of the shadow map (shadow/shadow_view.h).
+    vec4 shadow_x, shadow_y, shadow_z, shadow_w;
+    vec4 shadow;        // x: texels a side
 };
+
+// Of the sun's light in the mean, where no shadow map says: a sunbeam crosses the crown once more than the mean of the sky does.
+float stand_in_sun(float openness) { return mix(0.12, 1.0, openness * openness); }
 
 vec3 sky_radiance(Light light, vec3 direction) {
     float up = clamp(direction.y, 0.0, 1.0);
@@ -23,7 +29,8 @@ vec3 sky_radiance(Light light, vec3 direction) {
     return sky + light.sun_color.rgb * (0.06 * power8 + 0.25 * power256);
 }
 
-vec3 shade(Light light, vec3 normal, vec3 to_viewer, vec3 color, float openness, bool leaf) {
+// sunlit: the share of the sun's light that arrives.
+vec3 shade(Light light, vec3 normal, vec3 to_viewer, vec3 color, float openness, float sunlit, bool leaf) {
     bool turned = leaf && dot(normal, to_viewer) < 0.0;
     normal = turned ? -normal : normal;
     float facing = dot(normal, light.to_sun.xyz);
@@ -34,8 +41,7 @@ vec3 shade(Light light, vec3 normal, vec3 to_viewer, vec3 color, float openness,
     vec3 sun = light.sun_color.rgb * (color * reflected + passed_color * 0.8 * passed);
     float up = 0.5 + 0.5 * normal.y;
     vec3 sky = mix(light.ground_color.rgb, mix(light.horizon_color.rgb, light.zenith_color.rgb, 0.5), up);
-    float sun_open = openness * openness;  // a sunbeam crosses the crown once more than the mean of the sky does
-    return sun * mix(0.12, 1.0, sun_open) + color * sky * openness;
+    return sun * sunlit + color * sky * openness;
 }
 
 vec3 apply_haze(Light light, vec3 radiance, vec3 direction, float distance_m) {

@@ -1,8 +1,10 @@
 // What the raster kernels share: the frame's constants, the work list, the transform, and the write of one pixel into
-// the visibility buffer. Lists are in DESIGN section 4; entries are written by draw/work_list.cpp (same layout).
+// the visibility buffer or, with k_shadow, into the shadow map. Lists are in DESIGN section 4; entries are written by
+// draw/work_list.cpp (same layout).
 //
-// World coordinates are relative to the camera. A point's column and row on the image are dot(row_x, p) / w and
-// dot(row_y, p) / w with w = dot(row_w, p), its distance along the view. Depth is near / w in (0, 1]: 0 is far.
+// World coordinates are relative to the camera. With p = (place, 1) a point's column and row on the image are
+// dot(row_x, p) / w and dot(row_y, p) / w with w = dot(row_w, p). In the picture w is the distance along the view, and depth is
+// near / w in (0, 1]: 0 is far. In the shadow map (shadow/shadow_view.h) depth is dot(row_z, p) / w, 1 is nearest to the sun.
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
 #extension GL_EXT_shader_atomic_int64 : require
 #include "plugins/vegetation/draw/surface.glsl"
@@ -12,10 +14,15 @@ layout(local_size_x_id = 0) in;
 // (MEASURED: many tiny instances).
 layout(constant_id = 1) const bool k_entry_a_lane = false;
 
+layout(constant_id = 4) const bool k_shadow = false;
+
 layout(push_constant) uniform Frame {
-    vec4 row_x;  // w: image width in pixels
-    vec4 row_y;  // w: image height in pixels
-    vec4 row_w;  // w: near distance in m
+    vec4 row_x, row_y, row_w;
+    vec4 row_z;              // of the shadow map only
+    vec4 viewer;             // of the shadow map: the view's axis; w: cosine of the picture's corners
+    vec2 size_px;            // width and height of the image
+    float near_w;            // what has less is cut off
+    float metres_a_pixel;    // of the shadow map: in the picture, at a distance of 1 m along the axis
     uint first_entry;
     uint entry_count;
     uint view;               // RepresentationView of lod/settings.h: colours say what was drawn
@@ -23,6 +30,7 @@ layout(push_constant) uniform Frame {
 } frame;
 
 layout(binding = 0) buffer Visibility { uint64_t visibility[]; };
+layout(binding = 0) buffer ShadowMap { uint shadow_map[]; };  // k_shadow: in place of the other
 layout(binding = 1) uniform utextureBuffer vertices;  // xyz: position in plant space as float bits, w: surface
 layout(binding = 2) uniform utextureBuffer entries;   // two texels an entry
 layout(binding = 3) uniform textureBuffer instances;  // two texels an instance: foot and scale, quaternion
@@ -65,7 +73,7 @@ Entry load_entry(uint index) {
 
 // Plant space -> (column * w, row * w, w), and the rotation for normals.
 struct Transform {
-    vec4 to_x, to_y, to_w;
+    vec4 to_x, to_y, to_w, to_z;
     vec3 turn_x, turn_y, turn_z;
     vec3 place;  // of the plant's origin
     bool ground;
@@ -82,6 +90,11 @@ Transform load_transform(uint instance, bool ground) {
     t.to_x = frame.row_x.x * x + frame.row_x.y * y + frame.row_x.z * z;
     t.to_y = frame.row_y.x * x + frame.row_y.y * y + frame.row_y.z * z;
     t.to_w = frame.row_w.x * x + frame.row_w.y * y + frame.row_w.z * z;
+    t.to_z = frame.row_z.x * x + frame.row_z.y * y + frame.row_z.z * z;
+    t.to_x.w += frame.row_x.w;
+    t.to_y.w += frame.row_y.w;
+    t.to_w.w += frame.row_w.w;
+    t.to_z.w += frame.row_z.w;
     t.turn_x = x.xyz;
     t.turn_y = y.xyz;
     t.turn_z = z.xyz;
@@ -95,6 +108,11 @@ vec3 project(Transform t, vec3 position) {
     vec4 p = vec4(position, 1.0);
     float w = dot(t.to_w, p);
     return vec3(vec2(dot(t.to_x, p), dot(t.to_y, p)) / w, w);
+}
+
+// Of a place with that w.
+float depth_of(Transform t, vec3 position, float w) {
+    return k_shadow ? dot(t.to_z, vec4(position, 1.0)) / w : frame.near_w / w;
 }
 
 const uint k_kind_point = 0u, k_kind_line = 1u, k_kind_triangle = 2u, k_kind_leaf = 3u;
@@ -111,6 +129,32 @@ vec3 view_direction(Transform t, vec3 position_plant) {
 
 float distance_to(Transform t, vec3 position_plant) {
     return length(t.place + turn_direction(t, position_plant));
+}
+
+// Of the shadow map around a place on it: how many columns and rows a metre at right angles to the sun is, each in the mean over
+// directions, and texels a square metre; the direction to or from the sun. Along the sun neither column nor row changes,
+// so their gradients are at right angles to it.
+struct MapScale {
+    vec2 side;
+    float area;
+    vec3 normal;
+};
+
+MapScale map_scale(vec3 place_on_map) {
+    vec3 to_column = (frame.row_x.xyz - place_on_map.x * frame.row_w.xyz) / place_on_map.z;
+    vec3 to_row = (frame.row_y.xyz - place_on_map.y * frame.row_w.xyz) / place_on_map.z;
+    vec3 both = cross(to_column, to_row);
+    float area = length(both);
+    vec2 side = vec2(length(to_column), length(to_row));
+    return MapScale(side * sqrt(area / max(side.x * side.y, 1.0e-30)), area, both / max(area, 1.0e-30));
+}
+
+// What of the picture's pixels (cull/frustum.h, off_axis_stretch) sizes are counted in, at that place of a caster.
+float metres_a_pixel(Transform t, vec3 position_plant) {
+    vec3 p = t.place + turn_direction(t, position_plant);
+    float distance_m = length(p);
+    float cosine = max(dot(frame.viewer.xyz, p) / max(distance_m, 1.0e-30), frame.viewer.w);
+    return frame.metres_a_pixel * distance_m * cosine * sqrt(cosine);
 }
 
 // plant/plant.h, of two numbers as draw/work_list.cpp packs them.
@@ -142,10 +186,13 @@ uint turn_surface(Transform t, uint surface, uint kind) {
 }
 
 // The nearer surface wins; ties go to the larger word, so the order of work never shows. Reading the depth first spares
-// most atomics where much is hidden (MEASURED: rasterising); it only grows, so an old value is safe to go by.
+// most atomics where much is hidden (MEASURED: rasterising); it only grows, so an old value is safe to go by. What is nearer to
+// the sun than the map begins lies on its border.
 void write_pixel(ivec2 pixel, float depth, uint surface) {
-    uint index = uint(pixel.y) * uint(frame.row_x.w) + uint(pixel.x);
-    uint depth_bits = floatBitsToUint(depth);
-    if (uint(visibility[index] >> 32) <= depth_bits)
+    uint index = uint(pixel.y) * uint(frame.size_px.x) + uint(pixel.x);
+    uint depth_bits = floatBitsToUint(k_shadow ? clamp(depth, 0.0, 1.0) : depth);
+    if (k_shadow) {
+        if (shadow_map[index] < depth_bits) atomicMax(shadow_map[index], depth_bits);
+    } else if (uint(visibility[index] >> 32) <= depth_bits)
         atomicMax(visibility[index], uint64_t(depth_bits) << 32 | uint64_t(surface));
 }

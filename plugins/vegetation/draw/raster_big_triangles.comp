@@ -14,6 +14,7 @@ layout(binding = 4) readonly buffer BigTriangles {
 
 struct Corner {
     vec3 place;     // column * w, row * w, w
+    float depth_w;  // of the shadow map: depth * w
     vec3 normal;    // world space, any length
     vec3 color;     // linear
     float openness;
@@ -24,15 +25,15 @@ Corner load_corner(Transform t, uint index, out uint surface) {
     surface = turn_surface(t, v.w, k_kind_triangle);
     vec3 normal = decode_normal(surface);
     vec4 p = vec4(uintBitsToFloat(v.xyz), 1.0);
-    return Corner(vec3(dot(t.to_x, p), dot(t.to_y, p), dot(t.to_w, p)), normal / max(length(normal), 1.0e-6), decode_color_linear(surface),
+    return Corner(vec3(dot(t.to_x, p), dot(t.to_y, p), dot(t.to_w, p)), dot(t.to_z, p), normal / max(length(normal), 1.0e-6), decode_color_linear(surface),
                   decode_openness(surface));
 }
 
 // Where an edge crosses the near plane; always from the corner behind it, so that both triangles of the edge agree.
 Corner cut_edge(Corner behind, Corner ahead) {
-    float near_m = frame.row_w.w;
-    float s = clamp((near_m - behind.place.z) / (ahead.place.z - behind.place.z), 0.0, 1.0);
-    return Corner(vec3(mix(behind.place.xy, ahead.place.xy, s), near_m), mix(behind.normal, ahead.normal, s),
+    float near_w = frame.near_w;
+    float s = clamp((near_w - behind.place.z) / (ahead.place.z - behind.place.z), 0.0, 1.0);
+    return Corner(vec3(mix(behind.place.xy, ahead.place.xy, s), near_w), mix(behind.depth_w, ahead.depth_w, s), mix(behind.normal, ahead.normal, s),
                   mix(behind.color, ahead.color, s), mix(behind.openness, ahead.openness, s));
 }
 
@@ -49,9 +50,9 @@ uint pack_surface(vec3 normal, vec3 color, float openness, uint leaf, ivec2 pixe
 }
 
 void draw_triangle(Corner corners[3], uint leaf) {
-    vec2 size = vec2(frame.row_x.w, frame.row_y.w);
-    float near_m = frame.row_w.w;
-    vec3 inverse_w = 1.0 / max(vec3(corners[0].place.z, corners[1].place.z, corners[2].place.z), vec3(near_m));
+    vec2 size = frame.size_px;
+    float near_w = frame.near_w;
+    vec3 inverse_w = 1.0 / max(vec3(corners[0].place.z, corners[1].place.z, corners[2].place.z), vec3(near_w));
     // Divided as project() does, so that edges shared with small triangles fall on the same places.
     vec2 a = corners[0].place.xy / corners[0].place.z, b = corners[1].place.xy / corners[1].place.z,
          c = corners[2].place.xy / corners[2].place.z;
@@ -65,19 +66,23 @@ void draw_triangle(Corner corners[3], uint leaf) {
              column += float(gl_WorkGroupSize.x)) {
             ivec2 pixel = ivec2(column, row);
             vec3 weight = weights_at(plane, a, vec2(pixel) + 0.5) * inverse_w;
+            if (k_shadow) {
+                write_pixel(pixel, dot(weight, vec3(corners[0].depth_w, corners[1].depth_w, corners[2].depth_w)), 0u);
+                continue;
+            }
             float sum = weight.x + weight.y + weight.z;
             vec3 share = weight / sum;  // perspective-correct
             vec3 normal = corners[0].normal * share.x + corners[1].normal * share.y + corners[2].normal * share.z;
             vec3 color = corners[0].color * share.x + corners[1].color * share.y + corners[2].color * share.z;
             float openness = dot(share, vec3(corners[0].openness, corners[1].openness, corners[2].openness));
-            write_pixel(pixel, near_m * sum, pack_surface(normal, color, openness, leaf, pixel));
+            write_pixel(pixel, near_w * sum, pack_surface(normal, color, openness, leaf, pixel));
         }
     }
 }
 
 void main() {
     uint count = min(big_count, frame.big_triangle_limit);
-    float near_m = frame.row_w.w;
+    float near_w = frame.near_w;
     for (uint i = gl_WorkGroupID.x; i < count; i += gl_NumWorkGroups.x) {
         uvec2 reference = big[i];
         Transform t = load_transform(reference.y & ~k_ground_bit, (reference.y & k_ground_bit) != 0u);
@@ -85,7 +90,7 @@ void main() {
         uint surface, kept = 0u;
         for (int v = 0; v < 3; ++v) {
             corner[v] = load_corner(t, reference.x + uint(v), surface);
-            kept |= corner[v].place.z >= near_m ? 1u << v : 0u;
+            kept |= corner[v].place.z >= near_w ? 1u << v : 0u;
         }
         uint leaf = surface & k_leaf_bit;
         if (kept == 0u) continue;

@@ -32,8 +32,8 @@ void main() {
     if (!take_entry(index, first_item, step)) return;
     Entry entry = load_entry(index);
     Transform t = load_transform(entry.instance, false);
-    vec2 size = vec2(frame.row_x.w, frame.row_y.w);
-    float near_m = frame.row_w.w;
+    vec2 size = frame.size_px;
+    float near_w = frame.near_w;
     // From steps of the grid in place of metres.
     vec3 origin = uintBitsToFloat(texelFetch(vertices, int(entry.grid)).xyz);
     vec3 step_m = uintBitsToFloat(texelFetch(vertices, int(entry.grid + 1u)).xyz);
@@ -41,21 +41,24 @@ void main() {
     from_grid.to_x = vec4(t.to_x.xyz * step_m, dot(t.to_x, vec4(origin, 1.0)));
     from_grid.to_y = vec4(t.to_y.xyz * step_m, dot(t.to_y, vec4(origin, 1.0)));
     from_grid.to_w = vec4(t.to_w.xyz * step_m, dot(t.to_w, vec4(origin, 1.0)));
+    from_grid.to_z = vec4(t.to_z.xyz * step_m, dot(t.to_z, vec4(origin, 1.0)));
 
     for (uint i = first_item; i < entry.count; i += step) {
         uvec4 end = texelFetch(vertices, int(entry.first_vertex + i * 2u + 1u));
         if (end.w > entry.owner_min) continue;
         uvec4 begin = texelFetch(vertices, int(entry.first_vertex + i * 2u));
-        vec3 a = project(from_grid, steps_of(begin.x, begin.y));
-        vec3 b = project(from_grid, steps_of(begin.y >> 16 | begin.z << 16, begin.z >> 16));
-        vec3 c = project(from_grid, steps_of(begin.w, end.x));
-        vec3 d = project(from_grid, steps_of(end.x >> 16 | end.y << 16, end.y >> 16));
+        vec3 corner_a = steps_of(begin.x, begin.y), corner_c = steps_of(begin.w, end.x);
+        vec3 corner_b = steps_of(begin.y >> 16 | begin.z << 16, begin.z >> 16);
+        vec3 corner_d = steps_of(end.x >> 16 | end.y << 16, end.y >> 16);
+        vec3 a = project(from_grid, corner_a), b = project(from_grid, corner_b);
+        vec3 c = project(from_grid, corner_c), d = project(from_grid, corner_d);
         vec4 w = vec4(a.z, b.z, c.z, d.z);
         vec2 low = min(min(a.xy, b.xy), min(c.xy, d.xy)), high = max(max(a.xy, b.xy), max(c.xy, d.xy));
-        if (!all(greaterThanEqual(w, vec4(near_m))) ||
+        if (!all(greaterThanEqual(w, vec4(near_w))) ||
             any(greaterThanEqual(ceil(low - 0.5), min(ceil(high - 0.5), size))) || any(lessThanEqual(high, vec2(0.5))))
             continue;
-        vec4 depths = near_m / w;
+        vec4 depths = vec4(depth_of(from_grid, corner_a, w.x), depth_of(from_grid, corner_b, w.y),
+                           depth_of(from_grid, corner_c, w.z), depth_of(from_grid, corner_d, w.w));
         uint surface = turn_surface(t, end.z, k_kind_leaf);
         Half first = half_of(b.xy - a.xy, c.xy - a.xy, depths.y - depths.x, depths.z - depths.x);
         Half second = half_of(c.xy - a.xy, d.xy - a.xy, depths.z - depths.x, depths.w - depths.x);

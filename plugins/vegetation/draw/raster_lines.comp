@@ -55,23 +55,23 @@ void main() {
     if (!take_entry(index, first_item, step)) return;
     Entry entry = load_entry(index);
     Transform t = load_transform(entry.instance, entry.ground);
-    ivec2 size = ivec2(frame.row_x.w, frame.row_y.w);
-    float near_m = frame.row_w.w;
+    ivec2 size = ivec2(frame.size_px);
+    float near_w = frame.near_w;
 
     for (uint i = first_item; i < entry.count; i += step) {
         uvec4 v0 = texelFetch(vertices, int(entry.first_vertex + i * 2u));
         uvec4 v1 = texelFetch(vertices, int(entry.first_vertex + i * 2u + 1u));
         vec4 p0 = vec4(uintBitsToFloat(v0.xyz), 1.0), p1 = vec4(uintBitsToFloat(v1.xyz), 1.0);
         float w0 = dot(t.to_w, p0), w1 = dot(t.to_w, p1);
-        if (!(max(w0, w1) >= near_m)) continue;  // behind, or not a number
+        if (!(max(w0, w1) >= near_w)) continue;  // behind, or not a number
         // Cut at the near plane: the end behind it moves onto it.
-        float cut = clamp((near_m - w0) / (w1 - w0), 0.0, 1.0);
+        float cut = clamp((near_w - w0) / (w1 - w0), 0.0, 1.0);
         vec4 on_plane = mix(p0, p1, cut);
-        if (w0 < near_m) { p0 = on_plane; w0 = near_m; }
-        if (w1 < near_m) { p1 = on_plane; w1 = near_m; }
+        if (w0 < near_w) { p0 = on_plane; w0 = near_w; }
+        if (w1 < near_w) { p1 = on_plane; w1 = near_w; }
         vec2 a = vec2(dot(t.to_x, p0), dot(t.to_y, p0)) / w0;
         vec2 b = vec2(dot(t.to_x, p1), dot(t.to_y, p1)) / w1;
-        vec2 depths = near_m / vec2(w0, w1);
+        vec2 depths = vec2(depth_of(t, p0.xyz, w0), depth_of(t, p1.xyz, w1));
 
         bool steep = abs(b.y - a.y) > abs(b.x - a.x);
         if (steep) { a = a.yx; b = b.yx; }
@@ -84,7 +84,15 @@ void main() {
         uint surface = turn_surface(t, v0.w, k_kind_line) & ~k_normal_bits;
         LineNormals normals =
             line_normals(t, p1.xyz - p0.xyz, p0.xyz, v0.w, uintBitsToFloat(entry.owner_min));
-        float width = min(entry.size_px * uintBitsToFloat(v1.w) * sqrt(1.0 + slope * slope), 64.0);
+        float width_px = entry.size_px * uintBitsToFloat(v1.w);
+        if (k_shadow) {
+            // As wide as the strip that covers as much of the map as the line covers seen from the sun.
+            vec3 middle = 0.5 * (p0.xyz + p1.xyz), along = turn_direction(t, p1.xyz - p0.xyz);
+            MapScale scale = map_scale(vec3(0.5 * (steep ? a.yx + b.yx : a + b), 0.5 * (w0 + w1)));
+            float across = length(cross(along, scale.normal));
+            width_px *= metres_a_pixel(t, middle) * scale.area * across / max(length(b - a), 1.0e-6);
+        }
+        float width = min(width_px * sqrt(1.0 + slope * slope), 64.0);
 
         float first = max(ceil(a.x - 0.5), 0.0), last = min(ceil(b.x - 0.5), limit.x);
         for (float column = first; column < last; column += 1.0) {

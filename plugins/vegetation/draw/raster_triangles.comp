@@ -18,8 +18,8 @@ void main() {
     if (!take_entry(index, first_item, step)) return;
     Entry entry = load_entry(index);
     Transform t = load_transform(entry.instance, entry.ground);
-    vec2 size = vec2(frame.row_x.w, frame.row_y.w);
-    float near_m = frame.row_w.w;
+    vec2 size = frame.size_px;
+    float near_w = frame.near_w;
 
     for (uint i = first_item; i < entry.count; i += step) {
         uint first_vertex = entry.first_vertex + i * 3u;
@@ -30,8 +30,8 @@ void main() {
         vec3 b = project(t, uintBitsToFloat(v1.xyz));
         vec3 c = project(t, uintBitsToFloat(v2.xyz));
         vec3 w = vec3(a.z, b.z, c.z);
-        if (all(lessThan(w, vec3(near_m)))) continue;
-        bool across = any(lessThan(w, vec3(near_m)));
+        if (all(lessThan(w, vec3(near_w)))) continue;
+        bool across = any(lessThan(w, vec3(near_w)));
         vec2 low = min(min(a.xy, b.xy), c.xy), high = max(max(a.xy, b.xy), c.xy);
         if (!across) {
             // No pixel centre inside the bounds, or wholly beside the picture.
@@ -40,7 +40,7 @@ void main() {
                 continue;
             // Rows count downwards, so what is wound counter-clockwise for the viewer has a negative area here.
             vec2 to_b = b.xy - a.xy, to_c = c.xy - a.xy;
-            if (entry.cull_back && to_b.x * to_c.y > to_b.y * to_c.x) continue;
+            if (!k_shadow && entry.cull_back && to_b.x * to_c.y > to_b.y * to_c.x) continue;
         }
         if (across || any(greaterThan(high - low, vec2(k_side_limit_px)))) {
             uint slot = atomicAdd(big_count, 1u);
@@ -51,7 +51,8 @@ void main() {
         uint surface1 = turn_surface(t, v1.w, k_kind_triangle);
         uint surface2 = turn_surface(t, v2.w, k_kind_triangle);
         Plane plane = plane_through(a.xy, b.xy, c.xy);
-        vec3 depths = near_m / w;
+        vec3 depths = vec3(depth_of(t, uintBitsToFloat(v0.xyz), w.x), depth_of(t, uintBitsToFloat(v1.xyz), w.y),
+                           depth_of(t, uintBitsToFloat(v2.xyz), w.z));
 
         float row_last = min(ceil(high.y - 0.5), size.y);
         for (float row = max(ceil(low.y - 0.5), 0.0); row < row_last; row += 1.0) {

@@ -25,6 +25,7 @@ constexpr uint32_t k_cpu_columns = 4, k_cpu_rows = 64, k_gpu_columns = 1, k_gpu_
 
 struct LightBlock {
     vec4 to_sun, sun_color, zenith_color, horizon_color, ground_color, haze_color;
+    vec4 shadow_x, shadow_y, shadow_z, shadow_w, shadow;
 };
 
 gpu::BufferSettings device_buffer(VkDeviceSize size_bytes, const char* name) {
@@ -50,18 +51,20 @@ Result<std::unique_ptr<Rasteriser>> Rasteriser::create(const gpu::Device& device
                                                        uint32_t height) {
     std::unique_ptr<Rasteriser> rasteriser(new Rasteriser(device, graph));
     rasteriser->slots_.resize(std::max(frame_slots, 1u));
+    rasteriser->shadows_.is_shadow = true;
     COPPICE_CHECK(rasteriser->make_pipelines());
     for (uint32_t slot = 0; slot < rasteriser->slots_.size(); ++slot) {
         gpu::BufferSettings light = device_buffer(sizeof(LightBlock), "light");
         light.memory = gpu::MemoryUse::upload;
         COPPICE_TRY(rasteriser->slots_[slot].light, gpu::Buffer::create(device, light));
-        gpu::BufferSettings count = device_buffer(sizeof(uint32_t), "big count");
+        gpu::BufferSettings count = device_buffer(2 * sizeof(uint32_t), "big count");
         count.memory = gpu::MemoryUse::readback;
         COPPICE_TRY(rasteriser->slots_[slot].big_count, gpu::Buffer::create(device, count));
-        rasteriser->slots_[slot].big_count.mapped_as<uint32_t>()[0] = 0;
+        std::ranges::fill(rasteriser->slots_[slot].big_count.mapped_as<uint32_t>(), 0u);
         COPPICE_CHECK(rasteriser->grow(slot, k_first_instances, k_first_entries));
     }
-    COPPICE_CHECK(rasteriser->make_big_triangles(k_first_big_triangles));
+    COPPICE_CHECK(rasteriser->make_big_triangles(rasteriser->picture_, k_first_big_triangles));
+    COPPICE_CHECK(rasteriser->make_shadow_map(0));
     COPPICE_CHECK(rasteriser->set_geometry({}));
     COPPICE_CHECK(rasteriser->resize(width, height));
     rasteriser->add_passes();
@@ -70,49 +73,61 @@ Result<std::unique_ptr<Rasteriser>> Rasteriser::create(const gpu::Device& device
 
 Rasteriser::~Rasteriser() { vkDeviceWaitIdle(device_.handle); }
 
-Status Rasteriser::make_big_triangles(uint32_t limit) {
+Status Rasteriser::make_big_triangles(Target& target, uint32_t limit) {
     uint64_t room = (device_.limits.storage_range_bytes - 16) / 8;
     uint32_t count = uint32_t(std::min<uint64_t>(limit, room));
-    if (count == big_limit_) return {};
+    if (count == target.big_limit && target.big_triangles.size_bytes() > 0) return {};
     vkDeviceWaitIdle(device_.handle);
-    COPPICE_TRY(big_triangles_,
+    COPPICE_TRY(target.big_triangles,
                 gpu::Buffer::create(device_, device_buffer(16 + 8ull * count, "big triangles")));
-    big_limit_ = count;
+    target.big_limit = count;
     return {};
 }
 
-void Rasteriser::read_big_count(uint32_t slot) {
-    uint32_t count = slots_[slot].big_count.mapped_as<uint32_t>()[0];
-    dropped_triangles_ = count > big_limit_ ? count - big_limit_ : 0;
-    if (dropped_triangles_ == 0) return;
-    if (auto grown = make_big_triangles(count + count / 2); !grown)
-        log_warning("{}", to_string(grown.error()));
+void Rasteriser::read_big_counts(uint32_t slot) {
+    dropped_triangles_ = 0;
+    const std::span<const uint32_t> counts = slots_[slot].big_count.mapped_as<uint32_t>();
+    for (Target* target : {&picture_, &shadows_}) {
+        const uint32_t count = counts[target->is_shadow];
+        if (count <= target->big_limit) continue;
+        dropped_triangles_ += count - target->big_limit;
+        if (auto grown = make_big_triangles(*target, count + count / 2); !grown)
+            log_warning("{}", to_string(grown.error()));
+    }
 }
 
-Status Rasteriser::make_pipelines() {
-    using gpu::BindingKind;
-    static constexpr BindingKind k_points[] = {BindingKind::storage, BindingKind::texel, BindingKind::texel,
-                                               BindingKind::texel, BindingKind::texel};
-    static constexpr BindingKind k_lines[] = {BindingKind::storage, BindingKind::texel, BindingKind::texel,
-                                              BindingKind::texel};
-    static constexpr BindingKind k_triangles[] = {BindingKind::storage, BindingKind::texel,
-                                                  BindingKind::texel, BindingKind::texel,
-                                                  BindingKind::storage};
-    static constexpr BindingKind k_resolve[] = {BindingKind::storage, BindingKind::storage,
-                                                BindingKind::storage, BindingKind::storage};
-    auto make = [this](const char* name, std::span<const uint32_t> spirv,
-                       std::span<const BindingKind> bindings, uint32_t constant_bytes,
-                       std::initializer_list<uint32_t> specialization) {
-        std::vector<uint32_t> values(specialization);
-        return gpu::Pipeline::create(device_, {name, spirv, bindings, constant_bytes, values});
+namespace {
+
+using gpu::BindingKind;
+constexpr BindingKind k_point_bindings[] = {BindingKind::storage, BindingKind::texel, BindingKind::texel,
+                                            BindingKind::texel, BindingKind::texel};
+constexpr BindingKind k_line_bindings[] = {BindingKind::storage, BindingKind::texel, BindingKind::texel,
+                                           BindingKind::texel};
+constexpr BindingKind k_triangle_bindings[] = {BindingKind::storage, BindingKind::texel, BindingKind::texel,
+                                               BindingKind::texel, BindingKind::storage};
+constexpr BindingKind k_resolve_bindings[] = {BindingKind::storage, BindingKind::storage, BindingKind::storage,
+                                              BindingKind::storage, BindingKind::storage};
+
+Result<gpu::Pipeline> make_pipeline(const gpu::Device& device, const char* name,
+                                    std::span<const uint32_t> spirv, std::span<const BindingKind> bindings,
+                                    uint32_t constant_bytes, std::initializer_list<uint32_t> specialization) {
+    std::vector<uint32_t> values(specialization);
+    return gpu::Pipeline::create(device, {name, spirv, bindings, constant_bytes, values});
+}
+
+}  // namespace
+
+Status Rasteriser::make_pipelines(Target& target) {
+    const uint32_t lanes = device_.limits.group_size, shadow = target.is_shadow ? 1 : 0;
+    auto make = [&](const char* name, std::span<const uint32_t> spirv, std::span<const BindingKind> bindings,
+                    std::initializer_list<uint32_t> specialization) {
+        return make_pipeline(device_, name, spirv, bindings, sizeof(RasterConstants), specialization);
     };
-    uint32_t lanes = device_.limits.group_size;
     for (uint32_t small = 0; small < 2; ++small) {
-        auto& pipelines = small ? lane_pipelines_ : group_pipelines_;
+        auto& pipelines = small ? target.lane_pipelines : target.group_pipelines;
         auto points = [&](WorkKind kind, const char* name, uint32_t side_limit, uint32_t blend) -> Status {
-            COPPICE_TRY(pipelines[size_t(kind)],
-                        make(name, k_splat_points_spirv, k_points, sizeof(RasterConstants),
-                             {lanes, small, side_limit, blend}));
+            COPPICE_TRY(pipelines[size_t(kind)], make(name, k_splat_points_spirv, k_point_bindings,
+                                                      {lanes, small, side_limit, blend, shadow}));
             return {};
         };
         COPPICE_CHECK(points(WorkKind::points_1, "points, one pixel", 1, 0));
@@ -120,23 +135,37 @@ Status Rasteriser::make_pipelines() {
         COPPICE_CHECK(points(WorkKind::points_any, "points, any size", 0, 0));
         COPPICE_CHECK(points(WorkKind::points_blend, "points, blended", 0, 1));
         COPPICE_TRY(pipelines[size_t(WorkKind::lines)],
-                    make("lines", k_raster_lines_spirv, k_lines, sizeof(RasterConstants), {lanes, small}));
+                    make("lines", k_raster_lines_spirv, k_line_bindings, {lanes, small, 0, 0, shadow}));
         COPPICE_TRY(pipelines[size_t(WorkKind::leaves)],
-                    make("leaves", k_raster_leaves_spirv, k_lines, sizeof(RasterConstants), {lanes, small}));
-        COPPICE_TRY(pipelines[size_t(WorkKind::triangles)],
-                    make("triangles", k_raster_triangles_spirv, k_triangles, sizeof(RasterConstants),
-                         {lanes, small}));
+                    make("leaves", k_raster_leaves_spirv, k_line_bindings, {lanes, small, 0, 0, shadow}));
+        COPPICE_TRY(
+            pipelines[size_t(WorkKind::triangles)],
+            make("triangles", k_raster_triangles_spirv, k_triangle_bindings, {lanes, small, 0, 0, shadow}));
     }
-    COPPICE_TRY(big_pipeline_, make("big triangles", k_raster_big_triangles_spirv, k_triangles,
-                                    sizeof(RasterConstants), {lanes}));
+    COPPICE_TRY(target.big_pipeline, make("big triangles", k_raster_big_triangles_spirv, k_triangle_bindings,
+                                          {lanes, 0, 0, 0, shadow}));
+    return {};
+}
+
+Status Rasteriser::make_pipelines() {
+    COPPICE_CHECK(make_pipelines(picture_));
+    COPPICE_CHECK(make_pipelines(shadows_));
     const bool is_cpu = device_.limits.is_cpu;
+    const uint32_t lanes = device_.limits.group_size;
     const uint32_t columns = is_cpu ? k_cpu_columns : k_gpu_columns, rows = is_cpu ? k_cpu_rows : k_gpu_rows;
-    COPPICE_TRY(resolve_pipeline_, make("resolve", k_resolve_spirv, k_resolve, sizeof(ResolveConstants),
-                                        {lanes, 0, columns, rows}));
-    COPPICE_TRY(resolve_mean_pipeline_, make("resolve of the mean", k_resolve_spirv, k_resolve,
-                                             sizeof(ResolveConstants), {lanes, 1, columns, rows}));
-    COPPICE_TRY(accumulate_pipeline_, make("accumulate", k_accumulate_spirv, std::span(k_resolve).first(3),
-                                           sizeof(ResolveConstants), {lanes}));
+    auto resolve = [&](const char* name, uint32_t mean, uint32_t shadowed) {
+        return make_pipeline(device_, name, k_resolve_spirv, k_resolve_bindings, sizeof(ResolveConstants),
+                             {lanes, mean, columns, rows, shadowed});
+    };
+    auto accumulate = [&](const char* name, uint32_t shadowed) {
+        return make_pipeline(device_, name, k_accumulate_spirv, std::span(k_resolve_bindings).first(4),
+                             sizeof(ResolveConstants), {lanes, 0, 0, 0, shadowed});
+    };
+    COPPICE_TRY(resolve_pipeline_, resolve("resolve", 0, 0));
+    COPPICE_TRY(resolve_shadowed_pipeline_, resolve("resolve, shadowed", 0, 1));
+    COPPICE_TRY(resolve_mean_pipeline_, resolve("resolve of the mean", 1, 0));
+    COPPICE_TRY(accumulate_pipeline_, accumulate("accumulate", 0));
+    COPPICE_TRY(accumulate_shadowed_pipeline_, accumulate("accumulate, shadowed", 1));
     return {};
 }
 
@@ -219,7 +248,7 @@ Status Rasteriser::resize(uint32_t width, uint32_t height) {
     COPPICE_TRY(gpu::Buffer color, gpu::Buffer::create(device_, device_buffer(pixels * 4, "color")));
     COPPICE_TRY(gpu::Buffer no_radiance,
                 gpu::Buffer::create(device_, device_buffer(k_pixel_radiance_bytes, "radiance")));
-    visibility_ = std::move(visibility);
+    picture_.image = std::move(visibility);
     color_ = std::move(color);
     radiance_ = std::move(no_radiance);
     width_ = width;
@@ -241,6 +270,20 @@ Status Rasteriser::keep_radiance() {
     return {};
 }
 
+Status Rasteriser::make_shadow_map(uint32_t side_texels) {
+    const uint64_t size_bytes = std::max<uint64_t>(uint64_t(side_texels) * side_texels * 4, 16);
+    if (shadows_.image.size_bytes() == size_bytes) return {};
+    if (side_texels > 16384 || size_bytes > device_.limits.storage_range_bytes)
+        return fail(ErrorId::limit_exceeded, "", "shadow map", std::to_string(side_texels) + " texels a side",
+                    "sides up to 16384, and a buffer that this device takes: " +
+                        std::to_string(device_.limits.storage_range_bytes) + " bytes");
+    vkDeviceWaitIdle(device_.handle);
+    COPPICE_TRY(gpu::Buffer map, gpu::Buffer::create(device_, device_buffer(size_bytes, "shadow map")));
+    COPPICE_CHECK(make_big_triangles(shadows_, side_texels > 0 ? k_first_big_triangles : 0));
+    shadows_.image = std::move(map);
+    return {};
+}
+
 Status Rasteriser::grow(uint32_t slot, uint32_t instance_count, uint32_t entry_count) {
     vkDeviceWaitIdle(device_.handle);
     uint64_t instance_limit = device_.limits.texel_elements / 4,
@@ -259,33 +302,70 @@ Status Rasteriser::grow(uint32_t slot, uint32_t instance_count, uint32_t entry_c
     return {};
 }
 
-const gpu::Buffer& Rasteriser::last_binding(WorkKind kind) const {
-    return kind == WorkKind::triangles ? big_triangles_ : owners_;
-}
-
-void Rasteriser::draw(VkCommandBuffer commands, WorkKind kind) {
+void Rasteriser::draw(VkCommandBuffer commands, const Target& target, WorkKind kind) {
     const Slot& slot = slots_[slot_];
-    const gpu::Buffer* buffers[] = {&visibility_, &vertices_, &slot.entries, &slot.instances,
-                                    &last_binding(kind)};
+    const gpu::Buffer* buffers[] = {&target.image, &vertices_, &slot.entries, &slot.instances,
+                                    kind == WorkKind::triangles ? &target.big_triangles : &owners_};
     std::span<const gpu::Buffer* const> bound(
         buffers, kind == WorkKind::lines || kind == WorkKind::leaves ? 4 : 5);
     auto dispatch = [&](const gpu::Pipeline& pipeline, WorkRange range, uint32_t entries_a_group) {
         if (range.entry_count == 0) return;
-        RasterConstants constants = raster_;
+        RasterConstants constants = target.constants;
         constants.first_entry = range.first_entry;
         constants.entry_count = range.entry_count;
         pipeline.bind(commands, bound, &constants, sizeof constants);
         pipeline.dispatch(commands, (range.entry_count - 1) / entries_a_group + 1);
     };
-    dispatch(group_pipelines_[size_t(kind)], layout_.groups[size_t(kind)], 1);
-    dispatch(lane_pipelines_[size_t(kind)], layout_.lanes[size_t(kind)], device_.limits.group_size);
+    dispatch(target.group_pipelines[size_t(kind)], target.ranges.groups[size_t(kind)], 1);
+    dispatch(target.lane_pipelines[size_t(kind)], target.ranges.lanes[size_t(kind)],
+             device_.limits.group_size);
+}
+
+// names: of the passes clear, triangles, big triangles, leaves, lines, and four of points, by their size.
+void Rasteriser::add_raster_passes(Target& target, std::span<const char* const> names) {
+    target.image_resource = graph_.add_buffer(target.is_shadow ? "shadow map" : "visibility", &target.image);
+    target.big_resource = graph_.add_buffer(
+        target.is_shadow ? "big triangles of shadows" : "big triangles", &target.big_triangles);
+    const ResourceUse image{target.image_resource, BufferAccess::compute_atomic};
+    const ResourceUse vertices{vertices_resource_, BufferAccess::compute_read};
+    const ResourceUse owners{owners_resource_, BufferAccess::compute_read};
+    target.clear_pass =
+        graph_.add_pass(names[0],
+                        {{target.image_resource, BufferAccess::transfer_write},
+                         {target.big_resource, BufferAccess::transfer_write}},
+                        [&target](VkCommandBuffer commands) {
+                            vkCmdFillBuffer(commands, target.image.handle(), 0, VK_WHOLE_SIZE, 0);
+                            vkCmdFillBuffer(commands, target.big_triangles.handle(), 0, 16, 0);
+                        });
+    auto add_draw = [&](const char* name, WorkKind kind, std::vector<ResourceUse> uses) {
+        target.draw_passes[size_t(kind)] =
+            graph_.add_pass(name, std::move(uses), [this, &target, kind](VkCommandBuffer commands) {
+                draw(commands, target, kind);
+            });
+    };
+    add_draw(names[1], WorkKind::triangles,
+             {image, vertices, owners, {target.big_resource, BufferAccess::compute_read_write}});
+    target.big_pass = graph_.add_pass(
+        names[2], {image, vertices, {target.big_resource, BufferAccess::compute_read}},
+        [this, &target](VkCommandBuffer commands) {
+            const Slot& slot = slots_[slot_];
+            const gpu::Buffer* buffers[] = {&target.image, &vertices_, &slot.entries, &slot.instances,
+                                            &target.big_triangles};
+            target.big_pipeline.bind(commands, buffers, &target.constants, sizeof target.constants);
+            target.big_pipeline.dispatch(
+                commands, device_.limits.is_cpu ? 64 : 4096);  // groups stride over the list
+        });
+    add_draw(names[3], WorkKind::leaves, {image, vertices, owners});
+    add_draw(names[4], WorkKind::lines, {image, vertices, owners});
+    add_draw(names[5], WorkKind::points_1, {image, vertices, owners});
+    add_draw(names[6], WorkKind::points_2, {image, vertices, owners});
+    add_draw(names[7], WorkKind::points_any, {image, vertices, owners});
+    add_draw(names[8], WorkKind::points_blend, {image, vertices, owners});
 }
 
 void Rasteriser::add_passes() {
-    visibility_resource_ = graph_.add_buffer("visibility", &visibility_);
     vertices_resource_ = graph_.add_buffer("vertices", &vertices_);
     owners_resource_ = graph_.add_buffer("owners", &owners_);
-    big_resource_ = graph_.add_buffer("big triangles", &big_triangles_);
     color_resource_ = graph_.add_buffer("color", &color_);
     radiance_resource_ = graph_.add_buffer("radiance", &radiance_);
     big_count_resource_ = graph_.add_buffer("big count", &slots_[0].big_count);
@@ -304,72 +384,54 @@ void Rasteriser::add_passes() {
                             owner_uploads_.clear();
                             upload_bytes_ = 0;
                         });
-    clear_pass_ = graph_.add_pass(
-        "clear",
-        {{visibility_resource_, BufferAccess::transfer_write}, {big_resource_, BufferAccess::transfer_write}},
-        [this](VkCommandBuffer commands) {
-            vkCmdFillBuffer(commands, visibility_.handle(), 0, VK_WHOLE_SIZE, 0);
-            vkCmdFillBuffer(commands, big_triangles_.handle(), 0, 16, 0);
-        });
-    auto add_draw = [this](const char* name, WorkKind kind, std::vector<ResourceUse> uses) {
-        uses.push_back({vertices_resource_, BufferAccess::compute_read});
-        uses.push_back({owners_resource_, BufferAccess::compute_read});
-        draw_passes_[size_t(kind)] = graph_.add_pass(
-            name, std::move(uses), [this, kind](VkCommandBuffer commands) { draw(commands, kind); });
-    };
-    add_draw("triangles", WorkKind::triangles,
-             {{visibility_resource_, BufferAccess::compute_atomic},
-              {big_resource_, BufferAccess::compute_read_write}});
-    big_pass_ = graph_.add_pass("big triangles",
-                                {{visibility_resource_, BufferAccess::compute_atomic},
-                                 {big_resource_, BufferAccess::compute_read},
-                                 {vertices_resource_, BufferAccess::compute_read}},
-                                [this](VkCommandBuffer commands) {
-                                    const Slot& slot = slots_[slot_];
-                                    const gpu::Buffer* buffers[] = {&visibility_, &vertices_, &slot.entries,
-                                                                    &slot.instances, &big_triangles_};
-                                    big_pipeline_.bind(commands, buffers, &raster_, sizeof raster_);
-                                    big_pipeline_.dispatch(
-                                        commands,
-                                        device_.limits.is_cpu ? 64 : 4096);  // groups stride over the list
-                                });
-    big_count_pass_ = graph_.add_pass(
-        "count big triangles",
-        {{big_resource_, BufferAccess::transfer_read}, {big_count_resource_, BufferAccess::transfer_write}},
-        [this](VkCommandBuffer commands) {
-            VkBufferCopy first_word{0, 0, sizeof(uint32_t)};
-            vkCmdCopyBuffer(commands, big_triangles_.handle(), slots_[slot_].big_count.handle(), 1,
-                            &first_word);
-        });
-    add_draw("leaves", WorkKind::leaves, {{visibility_resource_, BufferAccess::compute_atomic}});
-    add_draw("lines", WorkKind::lines, {{visibility_resource_, BufferAccess::compute_atomic}});
-    add_draw("points 1 px", WorkKind::points_1, {{visibility_resource_, BufferAccess::compute_atomic}});
-    add_draw("points 2 px", WorkKind::points_2, {{visibility_resource_, BufferAccess::compute_atomic}});
-    add_draw("points large", WorkKind::points_any, {{visibility_resource_, BufferAccess::compute_atomic}});
-    add_draw("points blended", WorkKind::points_blend,
-             {{visibility_resource_, BufferAccess::compute_atomic}});
+    static constexpr const char* k_picture_passes[] = {
+        "clear",      "triangles",   "big triangles", "leaves",        "lines",
+        "points 1 px", "points 2 px", "points large",  "points blended"};
+    static constexpr const char* k_shadow_passes[] = {
+        "shadow clear",       "shadow triangles",   "shadow big triangles", "shadow leaves",        "shadow lines",
+        "shadow points 1 px", "shadow points 2 px", "shadow points large",  "shadow points blended"};
+    add_raster_passes(shadows_, k_shadow_passes);
+    add_raster_passes(picture_, k_picture_passes);
+    big_count_pass_ = graph_.add_pass("count big triangles",
+                                      {{picture_.big_resource, BufferAccess::transfer_read},
+                                       {shadows_.big_resource, BufferAccess::transfer_read},
+                                       {big_count_resource_, BufferAccess::transfer_write}},
+                                      [this](VkCommandBuffer commands) {
+                                          const VkBuffer counts = slots_[slot_].big_count.handle();
+                                          for (const Target* target : {&picture_, &shadows_}) {
+                                              VkBufferCopy first_word{0, target->is_shadow ? 4u : 0u, 4};
+                                              vkCmdCopyBuffer(commands, target->big_triangles.handle(),
+                                                              counts, 1, &first_word);
+                                          }
+                                      });
     auto lit = [this] {
-        return std::array<const gpu::Buffer*, 4>{&visibility_, &slots_[slot_].light, &radiance_, &color_};
+        return std::array<const gpu::Buffer*, 5>{&picture_.image, &slots_[slot_].light, &radiance_,
+                                                 &shadows_.image, &color_};
     };
     accumulate_pass_ = graph_.add_pass(
         "accumulate",
-        {{visibility_resource_, BufferAccess::compute_read},
+        {{picture_.image_resource, BufferAccess::compute_read},
+         {shadows_.image_resource, BufferAccess::compute_read},
          {radiance_resource_, BufferAccess::compute_read_write}},
         [this, lit](VkCommandBuffer commands) {
             const auto buffers = lit();
-            accumulate_pipeline_.bind(commands, std::span(buffers).first(3), &resolve_, sizeof resolve_);
-            accumulate_pipeline_.dispatch(commands, ((width_ - 1) / k_pixels_a_group + 1) * height_);
+            const gpu::Pipeline& pipeline =
+                has_shadows_ ? accumulate_shadowed_pipeline_ : accumulate_pipeline_;
+            pipeline.bind(commands, std::span(buffers).first(4), &resolve_, sizeof resolve_);
+            pipeline.dispatch(commands, ((width_ - 1) / k_pixels_a_group + 1) * height_);
         });
     resolve_pass_ = graph_.add_pass("resolve",
-                                    {{visibility_resource_, BufferAccess::compute_read},
+                                    {{picture_.image_resource, BufferAccess::compute_read},
+                                     {shadows_.image_resource, BufferAccess::compute_read},
                                      {radiance_resource_, BufferAccess::compute_read},
                                      {color_resource_, BufferAccess::compute_write},
                                      {big_count_resource_, BufferAccess::host_read}},
                                     [this, lit](VkCommandBuffer commands) {
                                         const auto buffers = lit();
-                                        const gpu::Pipeline& pipeline = resolve_.new_share > 0.0f
-                                                                            ? resolve_mean_pipeline_
-                                                                            : resolve_pipeline_;
+                                        const gpu::Pipeline& pipeline =
+                                            resolve_.new_share > 0.0f ? resolve_mean_pipeline_
+                                            : has_shadows_            ? resolve_shadowed_pipeline_
+                                                                      : resolve_pipeline_;
                                         pipeline.bind(commands, buffers, &resolve_, sizeof resolve_);
                                         pipeline.dispatch(commands, resolve_groups());
                                     });
@@ -384,57 +446,91 @@ uint32_t Rasteriser::resolve_groups() const {
 }
 
 void Rasteriser::set_frame(uint32_t slot, const WorkList::Layout& layout, const Camera& camera,
-                           const Light& light, const PictureSettings& picture) {
+                           const Light& light, const PictureSettings& picture, const ShadowSettings& shadow) {
     slot_ = slot;
-    layout_ = layout;
-    read_big_count(slot);
+    read_big_counts(slot);
     graph_.set_buffer(big_count_resource_, &slots_[slot].big_count);
     Frustum frustum = make_frustum(camera, width_, height_);
     float half_width = 0.5f * float(width_), half_height = 0.5f * float(height_);
     vec3 row_x = frustum.right * frustum.focal_px + frustum.forward * (half_width - picture.shift_px.x);
     vec3 row_y = frustum.up * -frustum.focal_px + frustum.forward * (half_height - picture.shift_px.y);
-    raster_.row_x = vec4(row_x, float(width_));
-    raster_.row_y = vec4(row_y, float(height_));
-    raster_.row_w = vec4(frustum.forward, camera.near_m);
-    raster_.view = resolve_.view = uint32_t(picture.view);
+    RasterConstants& raster = picture_.constants;
+    raster.row_x = vec4(row_x, 0.0f);
+    raster.row_y = vec4(row_y, 0.0f);
+    raster.row_w = vec4(frustum.forward, 0.0f);
+    raster.size_px = vec2(float(width_), float(height_));
+    raster.near_w = camera.near_m;
+    raster.view = resolve_.view = uint32_t(picture.view);
+    raster.big_triangle_limit = picture_.big_limit;
     resolve_.new_share = picture.new_share;
     resolve_.shift_px = picture.shift_px;
     // A tent of radius R weighs a neighbour at distance 1 with 1 - 1 / R.
     resolve_.side_weight = 1.0f - 1.0f / glm::clamp(picture.filter_radius_px, 1.0f, 2.0f);
-    graph_.set_active(accumulate_pass_, picture.new_share > 0.0f);
-    raster_.big_triangle_limit = big_limit_;
     resolve_.right = vec4(frustum.right * (1.0f / frustum.focal_px), float(width_));
     resolve_.up = vec4(frustum.up * (1.0f / frustum.focal_px), float(height_));
     resolve_.forward = vec4(frustum.forward, camera.near_m);
 
+    has_shadows_ = shadow.side_texels > 0;
+    RasterConstants& map = shadows_.constants;
+    map = raster;
+    map.row_x = shadow.view.row_x;
+    map.row_y = shadow.view.row_y;
+    map.row_z = shadow.view.row_z;
+    map.row_w = shadow.view.row_w;
+    map.viewer = vec4(frustum.forward, frustum.corner_cos);
+    map.size_px = vec2(float(shadow.side_texels));
+    map.near_w = shadow.view.least_w;
+    map.metres_a_pixel = 1.0f / frustum.focal_px;
+    map.big_triangle_limit = shadows_.big_limit;
+
     vec3 to_sun = normalize_or(light.direction_to_sun, vec3(0.0f));
-    LightBlock block{vec4(to_sun, light.exposure),       vec4(light.sun_color, light.haze_density_per_m),
-                     vec4(light.sky_zenith_color, 0.0f), vec4(light.sky_horizon_color, 0.0f),
-                     vec4(light.ground_color, 0.0f),     vec4(light.haze_color, 0.0f)};
+    LightBlock block{vec4(to_sun, light.exposure),
+                     vec4(light.sun_color, light.haze_density_per_m),
+                     vec4(light.sky_zenith_color, 0.0f),
+                     vec4(light.sky_horizon_color, 0.0f),
+                     vec4(light.ground_color, 0.0f),
+                     vec4(light.haze_color, 0.0f),
+                     map.row_x,
+                     map.row_y,
+                     map.row_z,
+                     map.row_w,
+                     vec4(map.size_px.x, 0.0f, 0.0f, 0.0f)};
     std::memcpy(slots_[slot].light.mapped(), &block, sizeof block);
 
-    for (size_t kind = 0; kind < k_work_kinds; ++kind)
-        graph_.set_active(draw_passes_[kind],
-                          layout.groups[kind].entry_count > 0 || layout.lanes[kind].entry_count > 0);
-    size_t triangles = size_t(WorkKind::triangles);
-    bool any = layout.groups[triangles].entry_count > 0 || layout.lanes[triangles].entry_count > 0;
-    graph_.set_active(big_pass_, any);
-    graph_.set_active(big_count_pass_, any);
-    graph_.set_active(clear_pass_, true);
+    picture_.ranges = layout.picture;
+    shadows_.ranges = has_shadows_ ? layout.casters : WorkRanges{};
+    set_active(picture_);
+    set_active(shadows_);
+    graph_.set_active(picture_.clear_pass, true);
+    graph_.set_active(shadows_.clear_pass, has_shadows_);
+    graph_.set_active(big_count_pass_, picture_.ranges.any(WorkKind::triangles) ||
+                                           shadows_.ranges.any(WorkKind::triangles));
+    graph_.set_active(accumulate_pass_, picture.new_share > 0.0f);
     graph_.set_active(resolve_pass_, true);
     graph_.set_active(upload_pass_, upload_bytes_ > 0);
 }
 
+void Rasteriser::set_active(const Target& target) {
+    for (size_t kind = 0; kind < k_work_kinds; ++kind)
+        graph_.set_active(target.draw_passes[kind], target.ranges.any(WorkKind(kind)));
+    graph_.set_active(target.big_pass, target.ranges.any(WorkKind::triangles));
+}
+
 void Rasteriser::skip_frame() {
-    for (uint32_t pass : draw_passes_) graph_.set_active(pass, false);
-    for (uint32_t pass :
-         {upload_pass_, clear_pass_, big_pass_, big_count_pass_, accumulate_pass_, resolve_pass_})
+    for (Target* target : {&picture_, &shadows_}) {
+        target->ranges = {};
+        set_active(*target);
+        graph_.set_active(target->clear_pass, false);
+    }
+    for (uint32_t pass : {upload_pass_, big_count_pass_, accumulate_pass_, resolve_pass_})
         graph_.set_active(pass, false);
 }
 
 uint64_t Rasteriser::gpu_bytes() const {
-    uint64_t total = visibility_.size_bytes() + color_.size_bytes() + radiance_.size_bytes() +
-                     vertices_.size_bytes() + owners_.size_bytes() + big_triangles_.size_bytes();
+    uint64_t total =
+        color_.size_bytes() + radiance_.size_bytes() + vertices_.size_bytes() + owners_.size_bytes();
+    for (const Target* target : {&picture_, &shadows_})
+        total += target->image.size_bytes() + target->big_triangles.size_bytes();
     for (const Slot& slot : slots_)
         total += slot.instances.size_bytes() + slot.entries.size_bytes() + slot.light.size_bytes() +
                  slot.uploads.size_bytes();

@@ -6,6 +6,7 @@
 #include <vector>
 #include "plugins/vegetation/components.h"
 #include "plugins/vegetation/draw/work_list.h"
+#include "plugins/vegetation/shadow/shadow_view.h"
 #include "runtime/frame/frame_graph.h"
 #include "runtime/gpu/pipeline.h"
 
@@ -26,6 +27,12 @@ struct PictureSettings {
     float new_share = 0.0f;
     float filter_radius_px =
         1.0f;  // of the tent that weighs samples, [1, 2]; 1: each pixel is its own sample
+};
+
+// The frame's shadow map.
+struct ShadowSettings {
+    uint32_t side_texels = 0;  // 0: none, and no pass is made
+    ShadowView view;
 };
 
 class Rasteriser {
@@ -54,18 +61,24 @@ class Rasteriser {
     std::span<WorkEntry> entries(uint32_t slot) { return slots_[slot].entries.mapped_as<WorkEntry>(); }
     // Makes room for more; waits for the device. Contents are lost.
     Status grow(uint32_t slot, uint32_t instance_count, uint32_t entry_count);
+    // Requires make_shadow_map of the shadow's size.
     void set_frame(uint32_t slot, const WorkList::Layout& layout, const Camera& camera, const Light& light,
-                   const PictureSettings& picture);
+                   const PictureSettings& picture, const ShadowSettings& shadow = {});
     // A frame that draws nothing: the picture stays as it is.
     void skip_frame();
     // Makes room for the mean of frames; waits for the device the first time at a size. Errors: limit_exceeded where the
     // device takes no buffer of 12 bytes a pixel.
     Status keep_radiance();
+    // Room for a shadow map of that side, 0: none; waits for the device when it changes. Errors: limit_exceeded, device_lost; the map
+    // before stays.
+    Status make_shadow_map(uint32_t side_texels);
 
     uint32_t width() const { return width_; }
     uint32_t height() const { return height_; }
     const gpu::Buffer& color() const { return color_; }
-    const gpu::Buffer& visibility() const { return visibility_; }
+    const gpu::Buffer& visibility() const { return picture_.image; }
+    // Depths as bits of floats, 1 nearest to the sun, 0 nothing; rows from the first.
+    const gpu::Buffer& shadow_map() const { return shadows_.image; }
     // Large triangles that found no room in the list of the last finished frame of this slot.
     uint32_t dropped_triangles() const { return dropped_triangles_; }
     ResourceIndex color_resource() const { return color_resource_; }
@@ -73,8 +86,23 @@ class Rasteriser {
 
   private:
     struct RasterConstants {
-        vec4 row_x, row_y, row_w;
+        vec4 row_x, row_y, row_w, row_z, viewer;
+        vec2 size_px;
+        float near_w, metres_a_pixel;
         uint32_t first_entry, entry_count, view, big_triangle_limit;
+    };
+    // Into the picture, or into the shadow map.
+    struct Target {
+        bool is_shadow = false;
+        gpu::Buffer image, big_triangles;
+        uint32_t big_limit = 0;
+        ResourceIndex image_resource = 0, big_resource = 0;
+        std::array<gpu::Pipeline, k_work_kinds> group_pipelines, lane_pipelines;
+        gpu::Pipeline big_pipeline;
+        uint32_t clear_pass = 0, big_pass = 0;
+        std::array<uint32_t, k_work_kinds> draw_passes{};
+        RasterConstants constants{};  // of the frame about to be recorded
+        WorkRanges ranges;            // likewise
     };
     struct ResolveConstants {
         vec4 right, up, forward;
@@ -86,39 +114,38 @@ class Rasteriser {
         gpu::Buffer instances, entries, light;
         gpu::Buffer uploads;  // what is streamed in
         gpu::Buffer
-            big_count;  // how many large triangles the frame had; read when the slot comes round again
+            big_count;  // how many large triangles picture and shadows had; read when the slot comes round again
     };
     Rasteriser(const gpu::Device& device, FrameGraph& graph) : device_(device), graph_(graph) {}
     Status make_pipelines();
-    Status make_big_triangles(uint32_t limit);
-    void read_big_count(uint32_t slot);
+    Status make_pipelines(Target& target);
+    Status make_big_triangles(Target& target, uint32_t limit);
+    void read_big_counts(uint32_t slot);
     void add_passes();
+    void add_raster_passes(Target& target, std::span<const char* const> names);
     uint32_t resolve_groups() const;
-    void draw(VkCommandBuffer commands, WorkKind kind);
-    const gpu::Buffer& last_binding(WorkKind kind) const;
+    void draw(VkCommandBuffer commands, const Target& target, WorkKind kind);
+    void set_active(const Target& target);
 
     const gpu::Device& device_;
     FrameGraph& graph_;
     uint32_t width_ = 0, height_ = 0;
-    gpu::Buffer visibility_, color_, radiance_, vertices_, owners_, big_triangles_;
+    Target picture_, shadows_;
+    gpu::Buffer color_, radiance_, vertices_, owners_;
     std::vector<Slot> slots_;
-    std::array<gpu::Pipeline, k_work_kinds> group_pipelines_, lane_pipelines_;
-    gpu::Pipeline big_pipeline_, resolve_pipeline_, accumulate_pipeline_, resolve_mean_pipeline_;
-    ResourceIndex visibility_resource_ = 0, color_resource_ = 0, radiance_resource_ = 0, big_resource_ = 0;
-    std::array<uint32_t, k_work_kinds> draw_passes_{};
-    ResourceIndex vertices_resource_ = 0, owners_resource_ = 0;
-    uint32_t upload_pass_ = 0, clear_pass_ = 0, big_pass_ = 0, big_count_pass_ = 0, accumulate_pass_ = 0,
-             resolve_pass_ = 0;
-    ResourceIndex big_count_resource_ = 0;
-    uint32_t big_limit_ = 0, dropped_triangles_ = 0;
+    gpu::Pipeline resolve_pipeline_, resolve_shadowed_pipeline_, resolve_mean_pipeline_, accumulate_pipeline_,
+        accumulate_shadowed_pipeline_;
+    ResourceIndex color_resource_ = 0, radiance_resource_ = 0, vertices_resource_ = 0, owners_resource_ = 0,
+                  big_count_resource_ = 0;
+    uint32_t upload_pass_ = 0, big_count_pass_ = 0, accumulate_pass_ = 0, resolve_pass_ = 0;
+    uint32_t dropped_triangles_ = 0;
 
     // Of the frame about to be recorded.
     uint32_t slot_ = 0;
+    bool has_shadows_ = false;
     std::vector<VkBufferCopy> vertex_uploads_, owner_uploads_;
     uint64_t upload_bytes_ = 0;  // of the ring of upload_slot_
     uint32_t upload_slot_ = 0;
-    WorkList::Layout layout_{};
-    RasterConstants raster_{};
     ResolveConstants resolve_{};
 };
 

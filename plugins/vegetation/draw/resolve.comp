@@ -11,7 +11,7 @@
 layout(constant_id = 1) const bool k_mean = false;  // of the mean that accumulate made, not of the frame
 layout(constant_id = 2) const int k_columns = 4;
 layout(constant_id = 3) const int k_rows = 64;
-layout(binding = 3) writeonly buffer Color { uint color[]; };
+layout(binding = 4) writeonly buffer Color { uint color[]; };
 
 vec3 light_at(Light sun, int column, int row, int width, int height) {
     uint x = uint(clamp(column, 0, width - 1)), y = uint(clamp(row, 0, height - 1));

@@ -2,6 +2,7 @@
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
 #include "plugins/vegetation/draw/surface.glsl"
 #include "plugins/vegetation/draw/light.glsl"
+#include "plugins/vegetation/draw/sunlit.glsl"
 
 layout(local_size_x_id = 0) in;
 
@@ -34,7 +35,10 @@ vec3 shade_pixel(Light sun, uint column, uint row) {
     vec3 normal = decode_normal(surface);
     normal *= inversesqrt(max(dot(normal, normal), 1.0e-12));
     vec3 albedo = decode_color_linear(surface);
-    vec3 lit = shade(sun, normal, -direction, albedo, decode_openness(surface), (surface & k_leaf_bit) != 0u);
+    float openness = decode_openness(surface);
+    float sunlit = stand_in_sun(openness);
+    if (k_shadows && covered) sunlit = sunlit_share(sun, direction * distance_m, normal, sunlit);
+    vec3 lit = shade(sun, normal, -direction, albedo, openness, sunlit, (surface & k_leaf_bit) != 0u);
     vec3 shown = covered ? apply_haze(sun, lit, direction, distance_m) : sky_radiance(sun, direction);
     if (frame.view == k_view_kinds) shown = covered ? albedo * (0.3 + 0.7 * abs(normal.y)) : shown;
     if (frame.view == k_view_coverage) shown = covered ? albedo : vec3(0.0);

@@ -16,12 +16,29 @@ layout(binding = 4) uniform utextureBuffer owners;
 // viewer by k_bend, for ground that is not level: m a metre. cull/horizon.cpp knows how near that may come.
 const float k_steepest = 1.5, k_bend = 0.5;
 
+// A rectangle of the map, as large as the square that the point shows the sun.
+void splat_shadow(Transform t, vec3 position, vec3 p, uint owner, Entry entry, float side_px, bool carries_density, MapScale scale) {
+    vec2 side = min(side_px * metres_a_pixel(t, position) * scale.side, vec2(64.0));
+    if (carries_density) {
+        // Below, of what lies beside the picture too.
+        vec3 from_viewer = t.place + turn_direction(t, position);
+        float distance_m = length(from_viewer), along_m = max(dot(frame.viewer.xyz, from_viewer), frame.viewer.w * distance_m);
+        if (uintBitsToFloat(owner) * along_m * along_m * along_m > entry.density_limit * distance_m) return;
+    }
+    vec2 low = p.xy - 0.5 * side - 0.5;
+    vec2 first = max(ceil(low), vec2(0.0)), last = min(ceil(low + side), frame.size_px);
+    if (!(p.z >= frame.near_w)) return;
+    float depth = depth_of(t, position, p.z);
+    for (float y = first.y; y < last.y; y += 1.0)
+        for (float x = first.x; x < last.x; x += 1.0) write_pixel(ivec2(x, y), depth, 0u);
+}
+
 void main() {
     uint index, first_item, step;
     if (!take_entry(index, first_item, step)) return;
     Entry entry = load_entry(index);
     Transform t = load_transform(entry.instance, entry.ground);
-    ivec2 size = ivec2(frame.row_x.w, frame.row_y.w);
+    ivec2 size = ivec2(frame.size_px);
     vec2 level = level_slope();
     float a_pixel = 1.0 / length(frame.row_x.xyz - dot(frame.row_x.xyz, frame.row_w.xyz) * frame.row_w.xyz);
     bool carries_density = k_blend && entry.density_limit > 0.0;
@@ -35,8 +52,17 @@ void main() {
         vec3 view = view_direction(t, position);
         float facing = abs(dot(unit_normal(t, vertex.w), view));
         // size_px is of a point that faces the viewer.
+        MapScale scale;
+        if (k_shadow) {
+            scale = map_scale(p);
+            facing = abs(dot(unit_normal(t, vertex.w), scale.normal));
+        }
         float side_px = entry.mean_facing > 0.0 ? entry.size_px * sqrt(facing) : entry.size_px;
         if (carries_density) side_px *= sqrt(seen_gain(entry.owner_min, view.y)) * exp2((float(owner & 0xffu) - 128.0) / 32.0);
+        if (k_shadow) {
+            splat_shadow(t, position, p, owner, entry, side_px, carries_density, scale);
+            continue;
+        }
         int side = k_side_limit > 0u ? int(k_side_limit) : min(int(ceil(side_px)), 64);
         // First pixel whose centre lies inside, and how many more there are along each axis.
         vec2 low = p.xy - 0.5 * side_px - 0.5;
@@ -45,14 +71,14 @@ void main() {
         // What a plant there would ask for (cull/frustum.h, off_axis_stretch).
         if (carries_density && uintBitsToFloat(owner) * p.z * p.z * p.z > entry.density_limit * distance_to(t, position))
             continue;
-        bool in_view = p.z >= frame.row_w.w && all(greaterThan(p.xy, vec2(-64.0))) &&
+        bool in_view = p.z >= frame.near_w && all(greaterThan(p.xy, vec2(-64.0))) &&
                        all(lessThan(p.xy, vec2(size) + 64.0));
         if (!in_view) continue;
         ivec2 corner = ivec2(first);
         uint surface = turn_surface(t, vertex.w, k_kind_point);
-        float depth = frame.row_w.w / p.z;
+        float depth = frame.near_w / p.z;
         float height = dot(t.turn_y, position) + t.place.y;
-        vec2 slope = level * (frame.row_w.w / height);
+        vec2 slope = level * (frame.near_w / height);
         slope *= min(1.0, k_steepest * a_pixel * depth / max(length(slope), 1.0e-30));
         for (int y = 0; y < side; ++y)
             for (int x = 0; x < side; ++x) {

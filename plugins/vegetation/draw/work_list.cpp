@@ -169,9 +169,10 @@ void WorkPart::add(const PartGeometry& geometry, const PartRule& rule, const Par
     }
 }
 
-void WorkList::begin(size_t part_count) {
+void WorkList::begin(size_t part_count, size_t caster_part_count) {
     if (parts_.size() < part_count) parts_.resize(part_count);
     part_count_ = part_count;
+    caster_part_count_ = caster_part_count;
     for (size_t i = 0; i < part_count; ++i) parts_[i].clear();
 }
 
@@ -182,6 +183,23 @@ WorkList::Size WorkList::size() const {
         size.entries += uint32_t(parts_[i].entry_count_);
     }
     return size;
+}
+
+uint32_t WorkList::place_entries(size_t first_part, size_t end_part, uint32_t next, uint32_t capacity,
+                                 WorkRanges& ranges) {
+    for (size_t bin = 0; bin < WorkPart::k_bins; ++bin) {
+        const uint32_t first = std::min(next, capacity);
+        for (size_t i = first_part; i < end_part; ++i) {
+            const uint32_t count = places_[i].next[bin];
+            places_[i].next[bin] = next;
+            next += count;
+        }
+        const size_t kind = bin / WorkPart::k_bins_of_kind, bucket = bin % WorkPart::k_bins_of_kind;
+        WorkRange& range = bucket == 0 ? ranges.groups[kind] : ranges.lanes[kind];
+        if (bucket <= 1) range.first_entry = first;
+        range.entry_count += std::min(next, capacity) - first;
+    }
+    return next;
 }
 
 WorkList::Layout WorkList::gather(std::span<WorkInstance> instances, std::span<WorkEntry> entries) {
@@ -196,19 +214,9 @@ WorkList::Layout WorkList::gather(std::span<WorkInstance> instances, std::span<W
         layout.instance_count += place.instance_count;
     }
     const uint32_t capacity = uint32_t(std::min<size_t>(entries.size(), UINT32_MAX));
-    uint32_t next = 0;
-    for (size_t bin = 0; bin < WorkPart::k_bins; ++bin) {
-        const uint32_t first = std::min(next, capacity);
-        for (size_t i = 0; i < part_count_; ++i) {
-            const uint32_t count = places_[i].next[bin];
-            places_[i].next[bin] = next;
-            next += count;
-        }
-        const size_t kind = bin / WorkPart::k_bins_of_kind, bucket = bin % WorkPart::k_bins_of_kind;
-        WorkRange& range = bucket == 0 ? layout.groups[kind] : layout.lanes[kind];
-        if (bucket <= 1) range.first_entry = first;
-        range.entry_count += std::min(next, capacity) - first;
-    }
+    const size_t first_caster = part_count_ - caster_part_count_;
+    uint32_t next = place_entries(0, first_caster, 0, capacity, layout.picture);
+    next = place_entries(first_caster, part_count_, next, capacity, layout.casters);
     layout.entry_count = std::min(next, capacity);
     layout.dropped_entries = size().entries - layout.entry_count;
 

@@ -131,10 +131,19 @@ struct WorkRange {
     uint32_t first_entry = 0, entry_count = 0;
 };
 
+// Of each kind what is drawn by groups, and what by lanes.
+struct WorkRanges {
+    std::array<WorkRange, k_work_kinds> groups, lanes;
+    bool any(WorkKind kind) const {
+        return groups[size_t(kind)].entry_count > 0 || lanes[size_t(kind)].entry_count > 0;
+    }
+};
+
 class WorkList {
   public:
-    // Parts for that many jobs, cleared.
-    void begin(size_t part_count);
+    // Parts for that many jobs, cleared. The last caster_part_count of them are drawn into the shadow map, the others into the
+    // picture.
+    void begin(size_t part_count, size_t caster_part_count = 0);
     WorkPart& part(size_t index) { return parts_[index]; }
 
     struct Size {
@@ -144,7 +153,7 @@ class WorkList {
     Size size() const;
 
     struct Layout {
-        std::array<WorkRange, k_work_kinds> groups, lanes;
+        WorkRanges picture, casters;
         uint32_t instance_count = 0, entry_count = 0;
         uint32_t dropped_entries = 0;  // beyond the capacity of the buffers
     };
@@ -157,8 +166,11 @@ class WorkList {
         uint32_t first_instance, instance_count;
         WorkPart::BinCounts next;  // where its next entry of each bin goes
     };
+    // Entries of the parts [first, end) from next on, sorted by dispatch; gives where the next would go.
+    uint32_t place_entries(size_t first, size_t end, uint32_t next, uint32_t capacity, WorkRanges& ranges);
+
     std::vector<WorkPart> parts_;
-    size_t part_count_ = 0;
+    size_t part_count_ = 0, caster_part_count_ = 0;
     std::vector<Place> places_;
 };
 

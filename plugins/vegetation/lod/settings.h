@@ -18,6 +18,14 @@ enum class FoliageMode : uint8_t {
     leaves,     // wherever a part has them
 };
 
+// How the shadow map is fitted to what is seen (shadow/fit_shadow.cpp).
+enum class ShadowKind : uint8_t {
+    none,         // no map is drawn: the sun reaches leaves as they are open to the sky
+    uniform,      // as fine far from the viewer as near
+    perspective,  // in the viewer's space after projection (Stamminger and Drettakis 2002)
+    light_space,  // warped along the view across the sun's rays (Wimmer et al. 2004)
+};
+
 enum class RepresentationView : uint8_t {
     lit,
     kinds,     // colours by kind: triangles green, leaves yellow, lines blue, points red
@@ -44,6 +52,10 @@ struct FrameSettings {
     bool level_of_detail = true;  // false: every triangle of everything in view
     bool blend = true;            // false: switch from points to triangles at once
     bool occlusion = true;  // false: what is behind the ground is drawn as well; the picture is the same
+    ShadowKind shadows = ShadowKind::none;
+    uint32_t shadow_side_texels = 1024;  // of the map
+    float shadow_distance_m = 1000.0f;   // along the view; what is farther is lit as without shadows
+    float shadow_coarseness = 1.0f;      // d' of what throws shadows over that of the picture
     RepresentationView view = RepresentationView::lit;
     // Each pixel shows its sample and its neighbours' under a tent of this radius, [1, 2] px; 1: its own alone. Leaves
     // are finer than pixels, and a sample of one point a pixel is far from the pixel's mean.

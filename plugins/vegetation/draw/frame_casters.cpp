@@ -1,0 +1,66 @@
+#include "plugins/vegetation/draw/frame_casters.h"
+
+#include <algorithm>
+#include <cmath>
+#include "plugins/vegetation/cull/caster_frustum.h"
+#include "plugins/vegetation/cull/ground_level.h"
+
+namespace coppice {
+namespace {
+
+// Shadows are coarser than what throws them.
+FrameSettings caster_settings(const FrameSettings& settings) {
+    FrameSettings of_casters = settings;
+    of_casters.sample_distance_px *= settings.shadow_coarseness;
+    of_casters.line_sample_distance_px *= settings.shadow_coarseness;
+    return of_casters;
+}
+
+float farthest_along(const Box& box, vec3 direction) {
+    const vec3 corner(direction.x > 0.0f ? box.max.x : box.min.x, direction.y > 0.0f ? box.max.y : box.min.y,
+                      direction.z > 0.0f ? box.max.z : box.min.z);
+    return glm::dot(corner, direction);
+}
+
+}  // namespace
+
+void FrameCasters::see(const TileList::Tiles& tiles, const TileList::Plants& plants,
+                       const SceneGeometry& geometry, std::span<const Ground> grounds, const Frustum& view,
+                       dvec3 camera_world, const Light& light, const FrameSettings& settings,
+                       const Box& scene_bounds) {
+    const vec3 to_sun = normalize_or(light.direction_to_sun, vec3(0.0f));
+    const bool has_sun = to_sun != vec3(0.0f) && light.sun_color != vec3(0.0f);
+    const float far_m = std::min(settings.shadow_distance_m, farthest_along(scene_bounds, view.forward));
+    side_texels_ = settings.shadows != ShadowKind::none && has_sun && far_m > view.near_m
+                       ? settings.shadow_side_texels
+                       : 0;
+    if (!any()) return;
+    frustum_ = make_caster_frustum(view, to_sun, far_m);
+    const FrameSettings of_casters = caster_settings(settings);
+    const float spread_px =
+        widest_spread_px(geometry.least_importance, geometry.most_line_width, of_casters);
+    tiles_.list(tiles, plants, frustum_, camera_world,
+                {of_casters.level_of_detail
+                     ? of_casters.sample_distance_px / std::sqrt(of_casters.splat_factor)
+                     : 0.0f,
+                 vec3(0.0f), nullptr, spread_px, 0.0f});
+    plants_.see(tiles_, geometry, frustum_, nullptr, spread_px);
+    grounds_.list(grounds, frustum_, camera_world, ground_error_px(settings));
+
+    // Sides of the picture, from its planes.
+    const vec3 right = vec3(view.planes[1]), top = vec3(view.planes[3]);
+    const float tangent_x = glm::dot(right, view.forward) / glm::dot(right, view.right);
+    const float tangent_y = glm::dot(top, view.forward) / glm::dot(top, view.up);
+    view_ = fit_shadow(settings.shadows, {view.right, view.up, view.forward, tangent_x, tangent_y, view.near_m,
+                                          far_m, scene_bounds, scene_bounds, to_sun, side_texels_});
+}
+
+void FrameCasters::draw(const SceneGeometry& geometry, const FrameSettings& settings, uint32_t rest_index,
+                        WorkList& work, size_t first_part) {
+    if (!any()) return;
+    plants_.draw(tiles_, geometry, frustum_, caster_settings(settings), rest_index, work, first_part + 1);
+    ground_expander_.expand(grounds_.in_view(), geometry, frustum_, ground_error_px(settings),
+                            work.part(first_part));
+}
+
+}  // namespace coppice

@@ -155,6 +155,32 @@ std::vector<Hybrid> hybrids() {
     };
 }
 
+// The defaults with shadows; quality is the map's side.
+class ShadowMethod final : public AccuracyMethod {
+  public:
+    ShadowMethod(const char* name, const char* what, ShadowKind kind) : name_(name), what_(what), kind_(kind) {}
+    std::string name() const override { return name_; }
+    std::string what() const override { return what_; }
+    std::string quality_name() const override { return "texels"; }
+    std::vector<double> qualities() const override { return {4096, 2048, 1024, 512}; }
+    double default_quality() const override { return 1024; }
+    Status prepare(const MethodInput& input) override {
+        original_ = input.original;
+        return {};
+    }
+    Result<DrawnFrame> frame(const Camera&, float, double quality) override {
+        FrameSettings settings;
+        settings.shadows = kind_;
+        settings.shadow_side_texels = uint32_t(quality);
+        return DrawnFrame{original_, settings};
+    }
+
+  private:
+    const char *name_, *what_;
+    ShadowKind kind_;
+    const MethodScene* original_ = nullptr;
+};
+
 // Every plant by the level of its ladder that suits its distance; quality is the grain in pixels.
 struct Substitute {
     const char* name;
@@ -232,6 +258,16 @@ std::vector<std::unique_ptr<AccuracyMethod>> make_accuracy_methods() {
     methods.push_back(std::make_unique<FullMethod>(4, 1.0f));
     methods.push_back(std::make_unique<FullMethod>(1, filtered_px));
     for (Hybrid& hybrid : hybrids()) methods.push_back(std::make_unique<HybridMethod>(std::move(hybrid)));
+    methods.push_back(std::make_unique<ShadowMethod>(
+        "shadows, uniform", "The defaults with a shadow map that is as fine far away as near.",
+        ShadowKind::uniform));
+    methods.push_back(std::make_unique<ShadowMethod>(
+        "shadows, perspective",
+        "The defaults with a perspective shadow map (Stamminger and Drettakis 2002).",
+        ShadowKind::perspective));
+    methods.push_back(std::make_unique<ShadowMethod>(
+        "shadows, light space", "The defaults with a light-space perspective shadow map (Wimmer et al. 2004).",
+        ShadowKind::light_space));
     for (Substitute& substitute : substitutes())
         methods.push_back(std::make_unique<SubstituteMethod>(std::move(substitute)));
     return methods;

@@ -57,7 +57,8 @@ void draw_plants(const SeenPlants& seen, const SceneGeometry& geometry, const Fr
             const float chance = chance_of(seen.seed[plant], part_of_model, turn);
             const PartGeometry& place = geometry.part_geometry[part];
             work.add(place, rule.expand(rule.choose(demand, chance), demand.side_gain), plant, turn,
-                     first_point_of(seen.seed[plant], part_of_model, place.point_turn_mask));
+                     first_point_of(seen.seed[plant], part_of_model, place.point_turn_mask),
+                     demand.pixels_per_meter);
         });
 }
 

@@ -18,8 +18,10 @@ layout(constant_id = 4) const bool k_shadow = false;
 
 layout(push_constant) uniform Frame {
     vec4 row_x, row_y, row_w;
-    vec4 row_z;              // of the shadow map only
-    vec4 viewer;             // of the shadow map: the view's axis; w: cosine of the picture's corners
+    // Of the shadow map only.
+    vec4 row_z;
+    vec4 to_sun;
+    vec4 viewer;             // the view's axis; w: cosine of the picture's corners
     vec2 size_px;            // width and height of the image
     float near_w;            // what has less is cut off
     float metres_a_pixel;    // of the shadow map: in the picture, at a distance of 1 m along the axis
@@ -40,7 +42,7 @@ const uint k_view_lit = 0u, k_view_kinds = 1u;
 
 struct Entry {
     uint first_vertex, count, instance, first_owner;
-    float size_px;   // splat side or line width
+    float size_px;   // splat side or line width; in the shadow map in metres of the plant, but of points that carry a density
     uint owner_min;  // of points that carry a density their height gain, of lines the share that is turned, of leaves the level
     bool cull_back;   // of triangles
     bool ground;
@@ -76,6 +78,7 @@ struct Transform {
     vec4 to_x, to_y, to_w, to_z;
     vec3 turn_x, turn_y, turn_z;
     vec3 place;  // of the plant's origin
+    float scale;
     bool ground;
 };
 
@@ -99,6 +102,7 @@ Transform load_transform(uint instance, bool ground) {
     t.turn_y = y.xyz;
     t.turn_z = z.xyz;
     t.place = vec3(x.w, y.w, z.w);
+    t.scale = foot.w;
     t.ground = ground;
     return t;
 }
@@ -131,25 +135,29 @@ float distance_to(Transform t, vec3 position_plant) {
     return length(t.place + turn_direction(t, position_plant));
 }
 
-// Of the shadow map around a place on it: how many columns and rows a metre at right angles to the sun is, each in the mean over
-// directions, and texels a square metre; the direction to or from the sun. Along the sun neither column nor row changes,
-// so their gradients are at right angles to it.
-struct MapScale {
-    vec2 side;
-    float area;
-    vec3 normal;
+// Of the shadow map: how columns, rows and w grow along two directions at right angles to the sun's, along which none of them
+// changes.
+struct SunAxes {
+    vec2 column, row, w;
 };
 
-MapScale map_scale(vec3 place_on_map) {
-    vec3 to_column = (frame.row_x.xyz - place_on_map.x * frame.row_w.xyz) / place_on_map.z;
-    vec3 to_row = (frame.row_y.xyz - place_on_map.y * frame.row_w.xyz) / place_on_map.z;
-    vec3 both = cross(to_column, to_row);
-    float area = length(both);
-    vec2 side = vec2(length(to_column), length(to_row));
-    return MapScale(side * sqrt(area / max(side.x * side.y, 1.0e-30)), area, both / max(area, 1.0e-30));
+SunAxes sun_axes() {
+    vec3 to_sun = frame.to_sun.xyz;
+    vec3 across = normalize(abs(to_sun.y) < 0.9 ? vec3(to_sun.z, 0.0, -to_sun.x) : vec3(0.0, -to_sun.z, to_sun.y));
+    vec3 along = cross(to_sun, across);
+    return SunAxes(vec2(dot(frame.row_x.xyz, across), dot(frame.row_x.xyz, along)),
+                   vec2(dot(frame.row_y.xyz, across), dot(frame.row_y.xyz, along)),
+                   vec2(dot(frame.row_w.xyz, across), dot(frame.row_w.xyz, along)));
 }
 
-// What of the picture's pixels (cull/frustum.h, off_axis_stretch) sizes are counted in, at that place of a caster.
+// How many columns and rows a square metre that faces the sun is at a place of the map: as much area, upright.
+vec2 map_scale(SunAxes axes, vec3 place_on_map) {
+    vec2 column = axes.column - place_on_map.x * axes.w, row = axes.row - place_on_map.y * axes.w;
+    float across = length(column), inverse_w = 1.0 / place_on_map.z;
+    return vec2(across, abs(column.x * row.y - column.y * row.x) / max(across, 1.0e-30)) * inverse_w;
+}
+
+// What a pixel of the picture is at that place (cull/frustum.h, off_axis_stretch).
 float metres_a_pixel(Transform t, vec3 position_plant) {
     vec3 p = t.place + turn_direction(t, position_plant);
     float distance_m = length(p);

@@ -57,6 +57,7 @@ void main() {
     Transform t = load_transform(entry.instance, entry.ground);
     ivec2 size = ivec2(frame.size_px);
     float near_w = frame.near_w;
+    SunAxes axes = sun_axes();
 
     for (uint i = first_item; i < entry.count; i += step) {
         uvec4 v0 = texelFetch(vertices, int(entry.first_vertex + i * 2u));
@@ -87,10 +88,9 @@ void main() {
         float width_px = entry.size_px * uintBitsToFloat(v1.w);
         if (k_shadow) {
             // As wide as the strip that covers as much of the map as the line covers seen from the sun.
-            vec3 middle = 0.5 * (p0.xyz + p1.xyz), along = turn_direction(t, p1.xyz - p0.xyz);
-            MapScale scale = map_scale(vec3(0.5 * (steep ? a.yx + b.yx : a + b), 0.5 * (w0 + w1)));
-            float across = length(cross(along, scale.normal));
-            width_px *= metres_a_pixel(t, middle) * scale.area * across / max(length(b - a), 1.0e-6);
+            vec2 scale = map_scale(axes, vec3(0.5 * (steep ? a.yx + b.yx : a + b), 0.5 * (w0 + w1)));
+            float across_m = length(cross(turn_direction(t, p1.xyz - p0.xyz), frame.to_sun.xyz));
+            width_px *= t.scale * scale.x * scale.y * across_m / max(length(b - a), 1.0e-6);
         }
         float width = min(width_px * sqrt(1.0 + slope * slope), 64.0);
 

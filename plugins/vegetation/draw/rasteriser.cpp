@@ -17,6 +17,7 @@ namespace {
 
 constexpr uint32_t k_first_big_triangles = 1u << 18;
 constexpr uint32_t k_first_instances = 1u << 14, k_first_entries = 1u << 16;
+constexpr uint32_t k_no_pass = UINT32_MAX;  // of a kind that a target has none of
 constexpr uint64_t k_pixel_radiance_bytes = 12;
 constexpr uint64_t k_upload_bytes = uint64_t(4) << 20;  // of a frame: what 25 tiles' clouds take
 constexpr uint32_t k_pixels_a_group = 256;              // accumulate.comp's k_run
@@ -117,7 +118,7 @@ Result<gpu::Pipeline> make_pipeline(const gpu::Device& device, const char* name,
 
 }  // namespace
 
-Status Rasteriser::make_pipelines(Target& target) {
+Status Rasteriser::make_raster_pipelines(Target& target) {
     const uint32_t lanes = device_.limits.group_size, shadow = target.is_shadow ? 1 : 0;
     auto make = [&](const char* name, std::span<const uint32_t> spirv, std::span<const BindingKind> bindings,
                     std::initializer_list<uint32_t> specialization) {
@@ -130,8 +131,10 @@ Status Rasteriser::make_pipelines(Target& target) {
                                                       {lanes, small, side_limit, blend, shadow}));
             return {};
         };
-        COPPICE_CHECK(points(WorkKind::points_1, "points, one pixel", 1, 0));
-        COPPICE_CHECK(points(WorkKind::points_2, "points, up to two pixels", 2, 0));
+        if (!target.is_shadow) {
+            COPPICE_CHECK(points(WorkKind::points_1, "points, one pixel", 1, 0));
+            COPPICE_CHECK(points(WorkKind::points_2, "points, up to two pixels", 2, 0));
+        }
         COPPICE_CHECK(points(WorkKind::points_any, "points, any size", 0, 0));
         COPPICE_CHECK(points(WorkKind::points_blend, "points, blended", 0, 1));
         COPPICE_TRY(pipelines[size_t(WorkKind::lines)],
@@ -147,25 +150,33 @@ Status Rasteriser::make_pipelines(Target& target) {
     return {};
 }
 
-Status Rasteriser::make_pipelines() {
-    COPPICE_CHECK(make_pipelines(picture_));
-    COPPICE_CHECK(make_pipelines(shadows_));
+Result<gpu::Pipeline> Rasteriser::make_resolve(const char* name, bool mean, bool shadowed) const {
     const bool is_cpu = device_.limits.is_cpu;
-    const uint32_t lanes = device_.limits.group_size;
-    const uint32_t columns = is_cpu ? k_cpu_columns : k_gpu_columns, rows = is_cpu ? k_cpu_rows : k_gpu_rows;
-    auto resolve = [&](const char* name, uint32_t mean, uint32_t shadowed) {
-        return make_pipeline(device_, name, k_resolve_spirv, k_resolve_bindings, sizeof(ResolveConstants),
-                             {lanes, mean, columns, rows, shadowed});
-    };
-    auto accumulate = [&](const char* name, uint32_t shadowed) {
-        return make_pipeline(device_, name, k_accumulate_spirv, std::span(k_resolve_bindings).first(4),
-                             sizeof(ResolveConstants), {lanes, 0, 0, 0, shadowed});
-    };
-    COPPICE_TRY(resolve_pipeline_, resolve("resolve", 0, 0));
-    COPPICE_TRY(resolve_shadowed_pipeline_, resolve("resolve, shadowed", 0, 1));
-    COPPICE_TRY(resolve_mean_pipeline_, resolve("resolve of the mean", 1, 0));
-    COPPICE_TRY(accumulate_pipeline_, accumulate("accumulate", 0));
-    COPPICE_TRY(accumulate_shadowed_pipeline_, accumulate("accumulate, shadowed", 1));
+    return make_pipeline(device_, name, k_resolve_spirv, k_resolve_bindings, sizeof(ResolveConstants),
+                         {device_.limits.group_size, mean ? 1u : 0u, is_cpu ? k_cpu_columns : k_gpu_columns,
+                          is_cpu ? k_cpu_rows : k_gpu_rows, shadowed ? 1u : 0u});
+}
+
+Result<gpu::Pipeline> Rasteriser::make_accumulate(const char* name, bool shadowed) const {
+    return make_pipeline(device_, name, k_accumulate_spirv, std::span(k_resolve_bindings).first(4),
+                         sizeof(ResolveConstants), {device_.limits.group_size, 0, 0, 0, shadowed ? 1u : 0u});
+}
+
+Status Rasteriser::make_pipelines() {
+    COPPICE_CHECK(make_raster_pipelines(picture_));
+    COPPICE_TRY(resolve_pipeline_, make_resolve("resolve", false, false));
+    COPPICE_TRY(resolve_mean_pipeline_, make_resolve("resolve of the mean", true, false));
+    COPPICE_TRY(accumulate_pipeline_, make_accumulate("accumulate", false));
+    return {};
+}
+
+// Those that a scene without shadows never waits for.
+Status Rasteriser::make_shadow_pipelines() {
+    if (has_shadow_pipelines_) return {};
+    COPPICE_CHECK(make_raster_pipelines(shadows_));
+    COPPICE_TRY(resolve_shadowed_pipeline_, make_resolve("resolve, shadowed", false, true));
+    COPPICE_TRY(accumulate_shadowed_pipeline_, make_accumulate("accumulate, shadowed", true));
+    has_shadow_pipelines_ = true;
     return {};
 }
 
@@ -272,6 +283,7 @@ Status Rasteriser::keep_radiance() {
 
 Status Rasteriser::make_shadow_map(uint32_t side_texels) {
     const uint64_t size_bytes = std::max<uint64_t>(uint64_t(side_texels) * side_texels * 4, 16);
+    if (side_texels > 0) COPPICE_CHECK(make_shadow_pipelines());
     if (shadows_.image.size_bytes() == size_bytes) return {};
     if (side_texels > 16384 || size_bytes > device_.limits.storage_range_bytes)
         return fail(ErrorId::limit_exceeded, "", "shadow map", std::to_string(side_texels) + " texels a side",
@@ -323,6 +335,7 @@ void Rasteriser::draw(VkCommandBuffer commands, const Target& target, WorkKind k
 
 // names: of the passes clear, triangles, big triangles, leaves, lines, and four of points, by their size.
 void Rasteriser::add_raster_passes(Target& target, std::span<const char* const> names) {
+    target.draw_passes.fill(k_no_pass);
     target.image_resource = graph_.add_buffer(target.is_shadow ? "shadow map" : "visibility", &target.image);
     target.big_resource = graph_.add_buffer(
         target.is_shadow ? "big triangles of shadows" : "big triangles", &target.big_triangles);
@@ -357,8 +370,10 @@ void Rasteriser::add_raster_passes(Target& target, std::span<const char* const> 
         });
     add_draw(names[3], WorkKind::leaves, {image, vertices, owners});
     add_draw(names[4], WorkKind::lines, {image, vertices, owners});
-    add_draw(names[5], WorkKind::points_1, {image, vertices, owners});
-    add_draw(names[6], WorkKind::points_2, {image, vertices, owners});
+    if (!target.is_shadow) {
+        add_draw(names[5], WorkKind::points_1, {image, vertices, owners});
+        add_draw(names[6], WorkKind::points_2, {image, vertices, owners});
+    }
     add_draw(names[7], WorkKind::points_any, {image, vertices, owners});
     add_draw(names[8], WorkKind::points_blend, {image, vertices, owners});
 }
@@ -388,8 +403,8 @@ void Rasteriser::add_passes() {
         "clear",      "triangles",   "big triangles", "leaves",        "lines",
         "points 1 px", "points 2 px", "points large",  "points blended"};
     static constexpr const char* k_shadow_passes[] = {
-        "shadow clear",       "shadow triangles",   "shadow big triangles", "shadow leaves",        "shadow lines",
-        "shadow points 1 px", "shadow points 2 px", "shadow points large",  "shadow points blended"};
+        "shadow clear", "shadow triangles", "shadow big triangles", "shadow leaves",        "shadow lines",
+        "",             "",                 "shadow points",        "shadow points blended"};
     add_raster_passes(shadows_, k_shadow_passes);
     add_raster_passes(picture_, k_picture_passes);
     big_count_pass_ = graph_.add_pass("count big triangles",
@@ -477,6 +492,7 @@ void Rasteriser::set_frame(uint32_t slot, const WorkList::Layout& layout, const 
     map.row_y = shadow.view.row_y;
     map.row_z = shadow.view.row_z;
     map.row_w = shadow.view.row_w;
+    map.to_sun = vec4(normalize_or(light.direction_to_sun, vec3(0.0f, 1.0f, 0.0f)), 0.0f);
     map.viewer = vec4(frustum.forward, frustum.corner_cos);
     map.size_px = vec2(float(shadow.side_texels));
     map.near_w = shadow.view.least_w;
@@ -512,7 +528,8 @@ void Rasteriser::set_frame(uint32_t slot, const WorkList::Layout& layout, const 
 
 void Rasteriser::set_active(const Target& target) {
     for (size_t kind = 0; kind < k_work_kinds; ++kind)
-        graph_.set_active(target.draw_passes[kind], target.ranges.any(WorkKind(kind)));
+        if (target.draw_passes[kind] != k_no_pass)
+            graph_.set_active(target.draw_passes[kind], target.ranges.any(WorkKind(kind)));
     graph_.set_active(target.big_pass, target.ranges.any(WorkKind::triangles));
 }
 

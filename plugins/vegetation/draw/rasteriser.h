@@ -86,7 +86,7 @@ class Rasteriser {
 
   private:
     struct RasterConstants {
-        vec4 row_x, row_y, row_w, row_z, viewer;
+        vec4 row_x, row_y, row_w, row_z, to_sun, viewer;
         vec2 size_px;
         float near_w, metres_a_pixel;
         uint32_t first_entry, entry_count, view, big_triangle_limit;
@@ -118,7 +118,10 @@ class Rasteriser {
     };
     Rasteriser(const gpu::Device& device, FrameGraph& graph) : device_(device), graph_(graph) {}
     Status make_pipelines();
-    Status make_pipelines(Target& target);
+    Status make_raster_pipelines(Target& target);
+    Status make_shadow_pipelines();
+    Result<gpu::Pipeline> make_resolve(const char* name, bool mean, bool shadowed) const;
+    Result<gpu::Pipeline> make_accumulate(const char* name, bool shadowed) const;
     Status make_big_triangles(Target& target, uint32_t limit);
     void read_big_counts(uint32_t slot);
     void add_passes();
@@ -142,7 +145,7 @@ class Rasteriser {
 
     // Of the frame about to be recorded.
     uint32_t slot_ = 0;
-    bool has_shadows_ = false;
+    bool has_shadows_ = false, has_shadow_pipelines_ = false;
     std::vector<VkBufferCopy> vertex_uploads_, owner_uploads_;
     uint64_t upload_bytes_ = 0;  // of the ring of upload_slot_
     uint32_t upload_slot_ = 0;

@@ -16,18 +16,24 @@ layout(binding = 4) uniform utextureBuffer owners;
 // viewer by k_bend, for ground that is not level: m a metre. cull/horizon.cpp knows how near that may come.
 const float k_steepest = 1.5, k_bend = 0.5;
 
-// A rectangle of the map, as large as the square that the point shows the sun.
-void splat_shadow(Transform t, vec3 position, vec3 p, uint owner, Entry entry, float side_px, bool carries_density, MapScale scale) {
-    vec2 side = min(side_px * metres_a_pixel(t, position) * scale.side, vec2(64.0));
-    if (carries_density) {
-        // Below, of what lies beside the picture too.
+// A rectangle of the shadow map, as large as the square that the point shows the sun.
+void splat_shadow(Transform t, Entry entry, SunAxes axes, vec3 sun_plant, uvec4 vertex, uint owner) {
+    vec3 position = uintBitsToFloat(vertex.xyz);
+    vec3 p = project(t, position);
+    float side_m = entry.size_px * t.scale;
+    if (k_blend && entry.density_limit > 0.0) {
         vec3 from_viewer = t.place + turn_direction(t, position);
         float distance_m = length(from_viewer), along_m = max(dot(frame.viewer.xyz, from_viewer), frame.viewer.w * distance_m);
         if (uintBitsToFloat(owner) * along_m * along_m * along_m > entry.density_limit * distance_m) return;
+        side_m = entry.size_px * metres_a_pixel(t, position) * exp2((float(owner & 0xffu) - 128.0) / 32.0) *
+                 sqrt(seen_gain(entry.owner_min, from_viewer.y / max(distance_m, 1.0e-30)));
     }
+    vec3 normal = decode_normal(vertex.w);
+    if (entry.mean_facing > 0.0) side_m *= sqrt(abs(dot(normal, sun_plant)) * inversesqrt(max(dot(normal, normal), 1.0e-30)));
+    vec2 side = min(side_m * map_scale(axes, p), vec2(64.0));
     vec2 low = p.xy - 0.5 * side - 0.5;
     vec2 first = max(ceil(low), vec2(0.0)), last = min(ceil(low + side), frame.size_px);
-    if (!(p.z >= frame.near_w)) return;
+    if (!(p.z >= frame.near_w) || any(greaterThanEqual(first, last))) return;
     float depth = depth_of(t, position, p.z);
     for (float y = first.y; y < last.y; y += 1.0)
         for (float x = first.x; x < last.x; x += 1.0) write_pixel(ivec2(x, y), depth, 0u);
@@ -41,28 +47,26 @@ void main() {
     ivec2 size = ivec2(frame.size_px);
     vec2 level = level_slope();
     float a_pixel = 1.0 / length(frame.row_x.xyz - dot(frame.row_x.xyz, frame.row_w.xyz) * frame.row_w.xyz);
+    SunAxes axes = sun_axes();
+    // Turned into the plant's space; t's rows are scaled.
+    vec3 sun_plant = (t.turn_x * frame.to_sun.x + t.turn_y * frame.to_sun.y + t.turn_z * frame.to_sun.z) / t.scale;
     bool carries_density = k_blend && entry.density_limit > 0.0;
 
     for (uint i = first_item; i < entry.count; i += step) {
         uint owner = k_blend ? texelFetch(owners, int(entry.first_owner + i)).x : 0u;
         if (k_blend && !carries_density && owner < entry.owner_min) continue;
         uvec4 vertex = texelFetch(vertices, int(entry.first_vertex + i));
+        if (k_shadow) {
+            splat_shadow(t, entry, axes, sun_plant, vertex, owner);
+            continue;
+        }
         vec3 position = uintBitsToFloat(vertex.xyz);
         vec3 p = project(t, position);
         vec3 view = view_direction(t, position);
         float facing = abs(dot(unit_normal(t, vertex.w), view));
         // size_px is of a point that faces the viewer.
-        MapScale scale;
-        if (k_shadow) {
-            scale = map_scale(p);
-            facing = abs(dot(unit_normal(t, vertex.w), scale.normal));
-        }
         float side_px = entry.mean_facing > 0.0 ? entry.size_px * sqrt(facing) : entry.size_px;
         if (carries_density) side_px *= sqrt(seen_gain(entry.owner_min, view.y)) * exp2((float(owner & 0xffu) - 128.0) / 32.0);
-        if (k_shadow) {
-            splat_shadow(t, position, p, owner, entry, side_px, carries_density, scale);
-            continue;
-        }
         int side = k_side_limit > 0u ? int(k_side_limit) : min(int(ceil(side_px)), 64);
         // First pixel whose centre lies inside, and how many more there are along each axis.
         vec2 low = p.xy - 0.5 * side_px - 0.5;

@@ -20,20 +20,22 @@ uint32_t pack_height_gain(HeightGain gain) {
     return pack(gain.second) | pack(gain.fourth) << 16;
 }
 
-// Of one size and all there are.
-WorkKind kind_of_points(float side_px) {
-    constexpr float k_slack =
-        1.0e-3f;  // a rounding error over a whole pixel must not cost four times the pixels
-    return side_px <= 1.0f + k_slack   ? WorkKind::points_1
-           : side_px <= 2.0f + k_slack ? WorkKind::points_2
-                                       : WorkKind::points_any;
-}
-
 size_t lane_bucket(uint32_t count) { return count <= 4 ? 0 : count <= 8 ? 1 : count <= 16 ? 2 : 3; }
 
 }  // namespace
 
-void WorkPart::clear() {
+// Texels of the shadow map are not pixels, so casters are all of any size.
+WorkKind WorkPart::kind_of_points(float side_px) const {
+    constexpr float k_slack =
+        1.0e-3f;  // a rounding error over a whole pixel must not cost four times the pixels
+    return is_caster_                ? WorkKind::points_any
+           : side_px <= 1.0f + k_slack ? WorkKind::points_1
+           : side_px <= 2.0f + k_slack ? WorkKind::points_2
+                                       : WorkKind::points_any;
+}
+
+void WorkPart::clear(bool is_caster) {
+    is_caster_ = is_caster;
     triangles = lines = points = leaves = 0;
     own_instances_.clear();
     instances_ = {};
@@ -101,7 +103,7 @@ void WorkPart::add_from(WorkKind kind, WorkEntry entry, uint32_t vertices_a_prim
 }
 
 void WorkPart::add(const PartGeometry& geometry, const PartChoice& choice, uint32_t instance, float start,
-                   uint32_t first_point) {
+                   uint32_t first_point, float pixels_per_meter) {
     auto place_of = [start](uint32_t stored) { return std::min(uint32_t(start * float(stored)), stored); };
     triangles += choice.triangles;
     lines += choice.lines;
@@ -111,7 +113,8 @@ void WorkPart::add(const PartGeometry& geometry, const PartChoice& choice, uint3
     if (choice.leaves > 0) add_leaves(geometry, choice.leaves, instance);
     if (choice.lines > 0)
         add_from(WorkKind::lines,
-                 {geometry.first_line_vertex, 0, instance, 0, choice.line_width_px,
+                 {geometry.first_line_vertex, 0, instance, 0,
+                  choice.line_width_px * unit_of(pixels_per_meter, false),
                   std::bit_cast<uint32_t>(choice.turned_share), 0, 0.0f},
                  2, place_of(geometry.line_count), geometry.line_count, choice.lines, false);
     if (choice.points == 0) return;
@@ -119,6 +122,7 @@ void WorkPart::add(const PartGeometry& geometry, const PartChoice& choice, uint3
     if (first >= geometry.point_count) first -= geometry.point_count;
     WorkEntry entry = entry_of_points(geometry, choice);
     entry.instance = instance;
+    entry.size_px *= unit_of(pixels_per_meter, choice.density_limit_m2 > 0.0f);
     const bool differ = choice.point_owner_min > 0 || choice.density_limit_m2 > 0.0f;
     add_from(differ ? WorkKind::points_blend : kind_of_points(choice.splat_px), entry, 1, first,
              geometry.point_count, choice.points, true);
@@ -152,7 +156,8 @@ void WorkPart::add(const PartGeometry& geometry, const PartRule& rule, const Par
         const uint32_t instance = first_instance + uint32_t(i);
         const bool is_points = form == Form::points;
         if (!(is_points || form == Form::line_points) || count > k_primitives_a_lane || start > 0.0f) {
-            add(geometry, rule.expand(choices[i], demands.side_gain[i]), instance, start, first_points[i]);
+            add(geometry, rule.expand(choices[i], demands.side_gain[i]), instance, start, first_points[i],
+                demands.pixels_per_meter[i]);
             continue;
         }
         make_room(1);
@@ -164,6 +169,7 @@ void WorkPart::add(const PartGeometry& geometry, const PartRule& rule, const Par
         entry.instance = instance;
         entry.size_px *= demands.side_gain[i];
         const WorkKind kind = is_points ? kind_of_points(entry.size_px) : WorkKind::points_blend;
+        entry.size_px *= unit_of(demands.pixels_per_meter[i], !is_points);
         write(size_t(kind) * k_bins_of_kind + 1 + lane_bucket(count), entry);
         points += count;
     }
@@ -173,7 +179,7 @@ void WorkList::begin(size_t part_count, size_t caster_part_count) {
     if (parts_.size() < part_count) parts_.resize(part_count);
     part_count_ = part_count;
     caster_part_count_ = caster_part_count;
-    for (size_t i = 0; i < part_count; ++i) parts_[i].clear();
+    for (size_t i = 0; i < part_count; ++i) parts_[i].clear(i + caster_part_count >= part_count);
 }
 
 WorkList::Size WorkList::size() const {

@@ -23,7 +23,7 @@ struct WorkEntry {
     uint32_t count;         // primitives
     uint32_t instance;      // its highest bit: k_ground_bit
     uint32_t first_owner;   // points_blend only; of clouds the points' densities
-    float size_px;          // splat side or line width
+    float size_px;          // splat side or line width; of casters in metres of the plant, but of points that carry a density
     uint32_t
         owner_min;  // points_blend; of those that carry a density PartChoice::height_gain, of lines the bits of its turned_share;
               // of leaves the level
@@ -70,7 +70,8 @@ class WorkPart {
     WorkPart() = default;
     WorkPart(WorkPart&&) = default;
     WorkPart& operator=(WorkPart&&) = default;
-    void clear();
+    // is_caster: drawn into the shadow map.
+    void clear(bool is_caster = false);
     // Index of the instance within this part, for add().
     uint32_t add_instance(const WorkInstance& instance);
     // All there are, which stay where they are until they have been gathered; their indices are those of the span.
@@ -80,8 +81,9 @@ class WorkPart {
     }
     // start in [0, 1): where in their lists the points and lines begin; they go on at the lists' beginning.
     // first_point: of the plant's run of points, which is moved by start.
+    // pixels_per_meter: of the picture, where the plant is; only casters need it.
     void add(const PartGeometry& geometry, const PartChoice& choice, uint32_t instance, float start = 0.0f,
-             uint32_t first_point = 0);
+             uint32_t first_point = 0, float pixels_per_meter = 1.0f);
     // Choice i of as many as there are in left_out, where that is 0, for instance first_instance + i.
     void add(const PartGeometry& geometry, const PartRule& rule, const PartDemands& demands,
              const PartChoices& choices, const PlantColumn<uint32_t>& first_points,
@@ -99,6 +101,12 @@ class WorkPart {
                   uint32_t stored, uint32_t count, bool has_owners);
     // Of points, all but their place, number and instance.
     static WorkEntry entry_of_points(const PartGeometry& geometry, const PartChoice& choice);
+    // What an entry's size is to be multiplied with.
+    float unit_of(float pixels_per_meter, bool carries_density) const {
+        return is_caster_ && !carries_density && pixels_per_meter > 0.0f ? 1.0f / pixels_per_meter : 1.0f;
+    }
+    // Of one size and all there are.
+    WorkKind kind_of_points(float side_px) const;
     void make_room(size_t count) {
         if (entries_.size() - entry_count_ >= count) return;
         entries_.resize(std::max(2 * entries_.size(), entry_count_ + count));
@@ -118,6 +126,7 @@ class WorkPart {
     // Entries whose instance is among the first instance_count.
     BinCounts count_with(uint32_t instance_count) const;
 
+    bool is_caster_ = false;
     std::vector<WorkInstance> own_instances_;
     std::span<const WorkInstance> instances_;
     size_t entry_count_ = 0;

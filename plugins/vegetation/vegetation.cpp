@@ -305,6 +305,11 @@ class VegetationSystems final : public Vegetation {
             camera_space = -at.space_camera;
             break;
         }
+        above_ground_m_ = INFINITY;
+        if (below) {
+            const dvec3 local = camera_space - below->origin_world();
+            above_ground_m_ = std::fabs(float(local.y) - below->height_at(float(local.x), float(local.z)));
+        }
         horizon_.build(frame_.occlusion ? below : nullptr, camera_space, frustum_, error_px);
     }
 
@@ -389,7 +394,7 @@ class VegetationSystems final : public Vegetation {
         double begin = now_ms();
         if (rested_ == 0) last_solved_px_ = budget_ > 0 ? solve(tiles, plants) : frame_.sample_distance_px;
         casters_.see(tiles, plants, geometry_, grounds_, frustum_, camera_.position_world, light_, drawn_,
-                     scene_bounds());
+                     scene_bounds(), std::min(frame_plants_.nearest_m(tile_list_), above_ground_m_));
         const size_t run_count = tile_list_.runs().size();
         // The first part is the terrain's: should memory run out, the ground stays. The last one is the clouds'.
         work_.begin(run_count + 2 + casters_.part_count(), casters_.part_count());
@@ -461,13 +466,21 @@ class VegetationSystems final : public Vegetation {
             report_.cloud_plants += tile.plant_count;
             report_.full_triangles += tile.triangle_count;
         }
-        report_.triangles = report_.lines = report_.points = report_.leaves = 0;
-        for (size_t i = 1; i < tile_list_.runs().size() + 2; ++i) {
-            report_.triangles += work_.part(i).triangles;
-            report_.lines += work_.part(i).lines;
-            report_.points += work_.part(i).points;
-            report_.leaves += work_.part(i).leaves;
-        }
+        const size_t part_count = tile_list_.runs().size() + 2;
+        const PrimitiveCounts seen = work_.count(1, part_count);
+        report_.triangles = seen.triangles;
+        report_.lines = seen.lines;
+        report_.points = seen.points;
+        report_.leaves = seen.leaves;
+        const PrimitiveCounts casters =
+            casters_.any() ? work_.count(part_count + 1, part_count + casters_.part_count())
+                           : PrimitiveCounts{};
+        report_.shadow_side_texels = casters_.side_texels();
+        report_.shadow_plants = casters_.plant_count();
+        report_.shadow_triangles = casters.triangles;
+        report_.shadow_lines = casters.lines;
+        report_.shadow_points = casters.points;
+        report_.shadow_leaves = casters.leaves;
         report_.vertices =
             report_.points + 2 * report_.lines + 3 * report_.triangles + 4 * report_.leaves;
         slot_counts_[slot_] = {counts_of(report_), true};
@@ -519,6 +532,7 @@ class VegetationSystems final : public Vegetation {
     vec3 motion_m_{0.0f};
     Frustum frustum_{};
     Horizon horizon_;
+    float above_ground_m_ = INFINITY;  // the viewer; infinite where there is none below
     TileList tile_list_;
     GroundList ground_list_;
     GroundExpander ground_expander_;

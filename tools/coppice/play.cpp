@@ -158,10 +158,6 @@ void add_play(CLI::App& app, Command& chosen) {
                      "Metres along the view up to which shadows are seen")
         ->check(CLI::Range(1.0, 1e6))
         ->capture_default_str();
-    play->add_option("--shadow-coarseness", options.settings.shadow_coarseness,
-                     "d' of what throws shadows over that of what is seen")
-        ->check(CLI::Range(0.1, 100.0))
-        ->capture_default_str();
     play->add_flag("--full", command->full, "Every triangle: no level of detail");
     play->add_flag("--compare-full", options.compare_full,
                    "Also draw some of the frames with every triangle, in the same run");

@@ -9,10 +9,11 @@ namespace coppice {
 
 class FrameCasters {
   public:
-    // Without a sun, or with shadows off, there are none. scene_bounds: all that there is, relative to the camera.
+    // Without a sun, or with shadows off, there are none. scene_bounds: all that there is, relative to the camera;
+    // nearest_m: from the viewer to what is seen, about: the map is as fine as a pixel there.
     void see(const TileList::Tiles& tiles, const TileList::Plants& plants, const SceneGeometry& geometry,
              std::span<const Ground> grounds, const Frustum& view, dvec3 camera_world, const Light& light,
-             const FrameSettings& settings, const Box& scene_bounds);
+             const FrameSettings& settings, const Box& scene_bounds, float nearest_m);
 
     bool any() const { return side_texels_ > 0; }
     // There is no room for the map: shadows are off for the frame.
@@ -22,6 +23,7 @@ class FrameCasters {
     // What of a streamed world is missing.
     std::span<const TileWish> wishes() const { return tiles_.wishes(); }
 
+    uint32_t plant_count() const;  // that throw shadows, without those that clouds stand for
     // Of the work list; 0 without shadows.
     size_t part_count() const { return any() ? tiles_.runs().size() + 2 : 0; }
     void draw(const SceneGeometry& geometry, const FrameSettings& settings, uint32_t rest_index, WorkList& work,

@@ -49,6 +49,13 @@ void FramePlants::draw(const TileList& tiles, const SceneGeometry& geometry, con
     });
 }
 
+float FramePlants::nearest_m(const TileList& tiles) const {
+    float nearest_m = INFINITY;
+    for (const CloudTile& cloud : tiles.clouds()) nearest_m = std::min(nearest_m, cloud.nearest_m);
+    for (size_t i = 0; i < run_count_; ++i) nearest_m = std::min(nearest_m, seen_[i].nearest_m);
+    return nearest_m;
+}
+
 void FramePlants::count(uint32_t& visible, uint32_t& hidden, uint64_t& full_triangles) const {
     visible = hidden = 0;
     full_triangles = 0;

@@ -19,6 +19,8 @@ class FramePlants {
     void draw(const TileList& tiles, const SceneGeometry& geometry, const Frustum& frustum,
               const FrameSettings& settings, uint32_t rest_index, WorkList& work, size_t first_part) const;
 
+    // From the viewer to what was seen, clouds too: an estimate. Infinite where nothing was.
+    float nearest_m(const TileList& tiles) const;
     // Of what was seen.
     void count(uint32_t& visible, uint32_t& hidden, uint64_t& full_triangles) const;
 

@@ -189,6 +189,8 @@ class Viewer {
         seen_.direction_y[at] = block_.direction_y[i];
         seen_.direction_z[at] = block_.direction_z[i];
         seen_.pixels_per_meter[at] = block_.pixels_per_meter[i];
+        seen_.nearest_m =
+            std::min(seen_.nearest_m, estimate_nearest_m(block_.distance_m[i], block_.radius_m[i]));
         seen_.seed[at] = run_.models[block_.index[i]].seed;
         seen_.instances[at] = {block_.x[i],      block_.y[i],      block_.z[i],      block_.scale[i],
                                block_.turn_x[i], block_.turn_y[i], block_.turn_z[i], block_.turn_w[i]};
@@ -234,6 +236,7 @@ void see_plants(const PlantRun& run, const SceneGeometry& geometry, const Frustu
     seen.groups.clear();
     seen.cells.clear();
     seen.hidden_plants = 0;
+    seen.nearest_m = INFINITY;
     seen.full_triangles = 0;
     make_room(seen, std::max<size_t>(run.positions.size(), k_plants_a_run));
     Viewer viewer(run, geometry, frustum, horizon, spread_px, seen);

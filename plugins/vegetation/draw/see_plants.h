@@ -2,6 +2,7 @@
 // times, and then it is drawn; both go over it by each_part, so that what is drawn is what was measured. Plants of one
 // model are a group, and what is said of each of them stands in columns, so that loops over them are made vectors of.
 #pragma once
+#include <algorithm>
 #include "plugins/vegetation/cull/horizon.h"
 #include "plugins/vegetation/cull/list_tiles.h"
 #include "plugins/vegetation/draw/scene_geometry.h"
@@ -32,6 +33,7 @@ struct SeenPlants {
     std::vector<SeenGroup> groups;
     std::vector<SeenCell> cells;
     uint32_t hidden_plants = 0;   // in view, but behind the ground
+    float nearest_m = INFINITY;   // from the viewer to a plant, as estimate_nearest_m says
     uint64_t full_triangles = 0;  // had all been drawn
 
     PlantViews views(const SeenGroup& group) const {
@@ -41,6 +43,12 @@ struct SeenPlants {
         return {part(direction_x), part(direction_y), part(direction_z), part(pixels_per_meter)};
     }
 };
+
+// From the viewer to what is nearest of a plant: to the sphere that holds it, or from within it, since crowns are hollow near
+// their middle, a third of its radius. An estimate: for what may be off, not for what may be left out.
+inline float estimate_nearest_m(float distance_m, float radius_m) {
+    return std::max(distance_m - radius_m, radius_m * (1.0f / 3.0f));
+}
 
 // Any thread. horizon: for runs that may have plants behind it (PlantRun::may_be_hidden); nullptr: nothing is hidden.
 // spread_px: widest_spread_px.

@@ -26,5 +26,5 @@ float sunlit_share(Light light, vec3 place, vec3 normal, float unknown) {
     uint index = uint(first.y) * uint(side) + uint(first.x), below = index + uint(side);
     vec4 nearest = uintBitsToFloat(uvec4(shadow_map[index], shadow_map[index + 1u], shadow_map[below], shadow_map[below + 1u]));
     vec4 open = vec4(lessThanEqual(nearest, vec4(depth)));
-    return mix(mix(open.x, open.y, share.x), mix(open.z, open.w, share.x), share.y);
+    return mix(1.0, unknown, min(1.0, 0.5 * texel_m)) * mix(mix(open.x, open.y, share.x), mix(open.z, open.w, share.x), share.y);
 }

@@ -182,6 +182,17 @@ void WorkList::begin(size_t part_count, size_t caster_part_count) {
     for (size_t i = 0; i < part_count; ++i) parts_[i].clear(i + caster_part_count >= part_count);
 }
 
+PrimitiveCounts WorkList::count(size_t first, size_t end) const {
+    PrimitiveCounts counts;
+    for (size_t i = first; i < end; ++i) {
+        counts.triangles += parts_[i].triangles;
+        counts.lines += parts_[i].lines;
+        counts.points += parts_[i].points;
+        counts.leaves += parts_[i].leaves;
+    }
+    return counts;
+}
+
 WorkList::Size WorkList::size() const {
     Size size;
     for (size_t i = 0; i < part_count_; ++i) {

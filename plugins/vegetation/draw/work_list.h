@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 #include "plugins/vegetation/lod/choose_part.h"
+#include "plugins/vegetation/lod/learn_cost.h"
 
 namespace coppice {
 
@@ -154,6 +155,9 @@ class WorkList {
     // picture.
     void begin(size_t part_count, size_t caster_part_count = 0);
     WorkPart& part(size_t index) { return parts_[index]; }
+
+    // Of plants, in the parts [first, end).
+    PrimitiveCounts count(size_t first, size_t end) const;
 
     struct Size {
         uint32_t instances = 0, entries = 0;

@@ -55,7 +55,6 @@ struct FrameSettings {
     ShadowKind shadows = ShadowKind::none;
     uint32_t shadow_side_texels = 1024;  // of the map
     float shadow_distance_m = 1000.0f;   // along the view; what is farther is lit as without shadows
-    float shadow_coarseness = 1.0f;      // d' of what throws shadows over that of the picture
     RepresentationView view = RepresentationView::lit;
     // Each pixel shows its sample and its neighbours' under a tent of this radius, [1, 2] px; 1: its own alone. Leaves
     // are finer than pixels, and a sample of one point a pixel is far from the pixel's mean.

@@ -54,6 +54,20 @@ float vertical_error(const HeightField& field, const Patch& patch, uint32_t step
     return error;
 }
 
+// A triangle's slope along x is that of one of its sides, and so along z; a coarse side's is a mean of fine ones'.
+float steepest_slope(const HeightField& field, const Patch& patch) {
+    float along_x = 0.0f, along_z = 0.0f;
+    for (uint32_t row = patch.row; row <= patch.row + patch.height; ++row)
+        for (uint32_t column = patch.column; column <= patch.column + patch.width; ++column) {
+            const float height = field.sample(column, row);
+            if (column < patch.column + patch.width)
+                along_x = std::max(along_x, std::fabs(field.sample(column + 1, row) - height));
+            if (row < patch.row + patch.height)
+                along_z = std::max(along_z, std::fabs(field.sample(column, row + 1) - height));
+        }
+    return std::sqrt(along_x * along_x + along_z * along_z) / field.cell_m;
+}
+
 // No diagonal of a coarse level crosses a block but from corner to corner, so the level's surface over a block is lowest
 // at a vertex or at a corner of the block.
 void find_least_heights(const HeightField& field, const Patch& patch, uint32_t step, float* least) {
@@ -281,6 +295,7 @@ TerrainMesh build_patches(const HeightField& field) {
                                    &mesh.least_heights[index * k_blocks_across * k_blocks_across]);
                 mesh.grids[index].skirt_m = vertical[index] + beside + 0.05f * float(step) * field.cell_m;
             }
+            out.steepest = steepest_slope(field, cut[p]);
             out.bounds_local =
                 bounds_of(field, std::span(mesh.grids).subspan(out.first_level, out.level_count));
         }

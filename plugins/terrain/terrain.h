@@ -47,6 +47,8 @@ struct TerrainLayout {
 struct TerrainPatch {
     Box bounds_local;
     uint32_t first_level, level_count;  // into Terrain::levels
+    // No piece of its surface, at any level, rises more m a metre; skirts do.
+    float steepest = INFINITY;
 };
 
 // A file from which the same ground is loaded, as "packed", at little cost: its heights and its look.

@@ -34,7 +34,8 @@ uint64_t GroundExpander::expand_skirts(const Terrain& terrain, size_t patch, uin
 }
 
 uint64_t GroundExpander::expand_terrain(const Terrain& terrain, vec3 origin_camera, uint32_t first_vertex,
-                                        const Frustum& frustum, float error_px, WorkPart& work) {
+                                        const Frustum& frustum, float error_px, WorkPart& work,
+                                        float least_slope) {
     const std::span<const TerrainPatch> patches = terrain.patches();
     auto bounds_of = [&](const TerrainPatch& patch) {
         return Box{patch.bounds_local.min + origin_camera, patch.bounds_local.max + origin_camera};
@@ -48,7 +49,8 @@ uint64_t GroundExpander::expand_terrain(const Terrain& terrain, vec3 origin_came
     const uint32_t instance = work.add_instance(instance_at(origin_camera));
     uint64_t triangles = 0;
     for (size_t p = 0; p < patches.size(); ++p) {
-        if (patches[p].level_count == 0 || see_box(frustum, bounds_of(patches[p])) == Visibility::outside)
+        if (patches[p].level_count == 0 || patches[p].steepest < least_slope ||
+            see_box(frustum, bounds_of(patches[p])) == Visibility::outside)
             continue;
         const TerrainLevel& level = terrain.levels()[patches[p].first_level + level_of_patch_[p]];
         const uint32_t surface = level.surface_vertex_count() / 3;
@@ -59,10 +61,11 @@ uint64_t GroundExpander::expand_terrain(const Terrain& terrain, vec3 origin_came
 }
 
 uint64_t GroundExpander::expand(std::span<const GroundInView> in_view, const SceneGeometry& geometry,
-                                const Frustum& frustum, float error_px, WorkPart& work) {
+                                const Frustum& frustum, float error_px, WorkPart& work, float least_slope) {
     uint64_t triangles = 0;
     for (const GroundInView& at : in_view) {
         const DrawGround& ground = geometry.grounds[at.ground];
+        if (ground.steepest < least_slope) continue;
         if (at.coarse_level != k_in_full) {
             const CoarseGround::Level& level = ground.coarse_levels[at.coarse_level];
             work.add_ground(ground.first_coarse_vertex + level.first_vertex, level.vertex_count / 3,
@@ -71,7 +74,7 @@ uint64_t GroundExpander::expand(std::span<const GroundInView> in_view, const Sce
         } else if (ground.terrain) {
             triangles +=
                 expand_terrain(*ground.terrain, vec3(ground.terrain->origin_world() + at.space_camera),
-                               ground.first_vertex, frustum, error_px, work);
+                               ground.first_vertex, frustum, error_px, work, least_slope);
         }
     }
     return triangles;

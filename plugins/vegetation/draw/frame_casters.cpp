@@ -38,6 +38,7 @@ void FrameCasters::see(const TileList::Tiles& tiles, const TileList::Plants& pla
                        ? settings.shadow_side_texels
                        : 0;
     if (!any()) return;
+    to_sun_ = to_sun;
     frustum_ = make_caster_frustum(view, to_sun, far_m);
     const FrameSettings of_casters = caster_settings(settings);
     const float spread_px =
@@ -70,8 +71,11 @@ void FrameCasters::draw(const SceneGeometry& geometry, const FrameSettings& sett
                         WorkList& work, size_t first_part) {
     if (!any()) return;
     plants_.draw(tiles_, geometry, frustum_, caster_settings(settings), rest_index, work, first_part + 1);
+    // Where a ray to the sun enters the ground, the ground rises more than the ray.
+    const float level_m = std::sqrt(to_sun_.x * to_sun_.x + to_sun_.z * to_sun_.z);
+    const float rise = to_sun_.y > 0.0f ? to_sun_.y / std::max(level_m, 1e-6f) : 0.0f;
     ground_expander_.expand(grounds_.in_view(), geometry, frustum_, ground_error_px(settings),
-                            work.part(first_part));
+                            work.part(first_part), rise);
 }
 
 }  // namespace coppice

@@ -30,6 +30,7 @@ class FrameCasters {
               size_t first_part);
 
   private:
+    vec3 to_sun_{0.0f, 1.0f, 0.0f};
     Frustum frustum_{};
     TileList tiles_;
     GroundList grounds_;

@@ -194,13 +194,16 @@ uint turn_surface(Transform t, uint surface, uint kind) {
 }
 
 // The nearer surface wins; ties go to the larger word, so the order of work never shows. Reading the depth first spares
-// most atomics where much is hidden (MEASURED: rasterising); it only grows, so an old value is safe to go by. What is nearer to
-// the sun than the map begins lies on its border.
+// most atomics where much is hidden (MEASURED: rasterising); it only grows, so an old value is safe to go by.
 void write_pixel(ivec2 pixel, float depth, uint surface) {
     uint index = uint(pixel.y) * uint(frame.size_px.x) + uint(pixel.x);
-    uint depth_bits = floatBitsToUint(k_shadow ? clamp(depth, 0.0, 1.0) : depth);
-    if (k_shadow) {
-        if (shadow_map[index] < depth_bits) atomicMax(shadow_map[index], depth_bits);
-    } else if (uint(visibility[index] >> 32) <= depth_bits)
+    uint depth_bits = floatBitsToUint(depth);
+    if (uint(visibility[index] >> 32) <= depth_bits)
         atomicMax(visibility[index], uint64_t(depth_bits) << 32 | uint64_t(surface));
+}
+
+// Into the shadow map. What is nearer to the sun than the map begins lies on its border.
+void write_texel(uint index, float depth) {
+    uint depth_bits = floatBitsToUint(clamp(depth, 0.0, 1.0));
+    if (shadow_map[index] < depth_bits) atomicMax(shadow_map[index], depth_bits);
 }

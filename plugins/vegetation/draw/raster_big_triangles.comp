@@ -57,6 +57,7 @@ void draw_triangle(Corner corners[3], uint leaf) {
     vec2 a = corners[0].place.xy / corners[0].place.z, b = corners[1].place.xy / corners[1].place.z,
          c = corners[2].place.xy / corners[2].place.z;
     Plane plane = plane_through(a, b, c);
+    Ramp ramp = ramp_through(plane, vec3(corners[0].depth_w, corners[1].depth_w, corners[2].depth_w) * inverse_w);
     float low = min(min(a.y, b.y), c.y), high = max(max(a.y, b.y), c.y);
     float row_first = max(ceil(low - 0.5), 0.0), row_last = min(ceil(high - 0.5), size.y);
     for (float row = row_first; row < row_last; row += 1.0) {
@@ -65,11 +66,11 @@ void draw_triangle(Corner corners[3], uint leaf) {
         for (float column = max(ceil(span.x - 0.5), 0.0) + float(gl_LocalInvocationID.x); column < column_last;
              column += float(gl_WorkGroupSize.x)) {
             ivec2 pixel = ivec2(column, row);
-            vec3 weight = weights_at(plane, a, vec2(pixel) + 0.5) * inverse_w;
             if (k_shadow) {
-                write_pixel(pixel, dot(weight, vec3(corners[0].depth_w, corners[1].depth_w, corners[2].depth_w)), 0u);
+                write_texel(uint(row) * uint(size.x) + uint(column), ramp_at(ramp, vec2(pixel) + 0.5 - a));
                 continue;
             }
+            vec3 weight = weights_at(plane, a, vec2(pixel) + 0.5) * inverse_w;
             float sum = weight.x + weight.y + weight.z;
             vec3 share = weight / sum;  // perspective-correct
             vec3 normal = corners[0].normal * share.x + corners[1].normal * share.y + corners[2].normal * share.z;

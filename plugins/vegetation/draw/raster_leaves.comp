@@ -70,7 +70,12 @@ void main() {
             vec2 from_a = pixel + 0.5 - a.xy;
             // Where both triangles of a fold are seen, the nearer one.
             float depth = max(depth_at(first, from_a, depths.x), depth_at(second, from_a, depths.x));
-            if (depth > 0.0) write_pixel(ivec2(pixel), depth, surface);
+            if (depth > 0.0) {
+                if (k_shadow)
+                    write_texel(uint(pixel.y) * uint(size.x) + uint(pixel.x), depth);
+                else
+                    write_pixel(ivec2(pixel), depth, surface);
+            }
             pixel.x += 1.0;
             pixel = pixel.x < last.x ? pixel : vec2(from.x, pixel.y + 1.0);
         }

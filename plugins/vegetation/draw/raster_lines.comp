@@ -102,7 +102,11 @@ void main() {
             float row_first = max(ceil(low), 0.0), row_last = min(ceil(low + width), limit.y);
             for (float row = row_first; row < row_last; row += 1.0) {
                 ivec2 pixel = ivec2(column, row);
-                write_pixel(steep ? pixel.yx : pixel, depth, surface | pick_normal(normals, pixel, i));
+                if (steep) pixel = pixel.yx;
+                if (k_shadow)
+                    write_texel(uint(pixel.y) * uint(frame.size_px.x) + uint(pixel.x), depth);
+                else
+                    write_pixel(pixel, depth, surface | pick_normal(normals, steep ? pixel.yx : pixel, i));
             }
         }
     }

@@ -54,11 +54,16 @@ void main() {
         vec3 depths = vec3(depth_of(t, uintBitsToFloat(v0.xyz), w.x), depth_of(t, uintBitsToFloat(v1.xyz), w.y),
                            depth_of(t, uintBitsToFloat(v2.xyz), w.z));
 
+        Ramp ramp = ramp_through(plane, depths);
         float row_last = min(ceil(high.y - 0.5), size.y);
         for (float row = max(ceil(low.y - 0.5), 0.0); row < row_last; row += 1.0) {
             vec2 span = scan_row(a.xy, b.xy, c.xy, row + 0.5);
             float column_last = min(ceil(span.y - 0.5), size.x);
             for (float column = max(ceil(span.x - 0.5), 0.0); column < column_last; column += 1.0) {
+                if (k_shadow) {
+                    write_texel(uint(row) * uint(size.x) + uint(column), ramp_at(ramp, vec2(column, row) + 0.5 - a.xy));
+                    continue;
+                }
                 vec3 weight = weights_at(plane, a.xy, vec2(column, row) + 0.5);
                 // So small a triangle shows one of its vertices a pixel, each as often as it weighs: interpolation in
                 // the mean, for a fraction of its price.

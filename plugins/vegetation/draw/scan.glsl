@@ -41,6 +41,20 @@ vec3 weights_at(Plane plane, vec2 a, vec2 position) {
     return vec3(1.0 - bc.x - bc.y, bc);
 }
 
+// What a value at the three corners gives at a place, by how much it grows a column and a row; kept between the least and the
+// largest of them.
+struct Ramp {
+    vec2 slope;
+    float at_a, least, most;
+};
+
+Ramp ramp_through(Plane plane, vec3 values) {
+    vec2 slope = plane.to_b * (values.y - values.x) + plane.to_c * (values.z - values.x);
+    return Ramp(slope, values.x, min(min(values.x, values.y), values.z), max(max(values.x, values.y), values.z));
+}
+
+float ramp_at(Ramp ramp, vec2 from_a) { return clamp(ramp.at_a + dot(ramp.slope, from_a), ramp.least, ramp.most); }
+
 // A fixed pattern over the picture with evenly spread values in [0, 1) (interleaved gradient noise, Jimenez 2014).
 float dither_chance(ivec2 pixel) {
     return fract(52.9829189 * fract(dot(vec2(pixel), vec2(0.06711056, 0.00583715))));

@@ -147,6 +147,8 @@ Result<SceneGeometry> gather_geometry(const GeometrySource& source) {
             drawn.first_vertex = uint32_t(geometry.vertices.size());
             geometry.vertices.resize(geometry.vertices.size() + ground.terrain->vertex_count());
             ground.terrain->write_vertices(std::span(geometry.vertices).subspan(drawn.first_vertex));
+            for (const TerrainPatch& patch : ground.terrain->patches())
+                drawn.steepest = std::max(drawn.steepest, patch.steepest);
         }
         drawn.first_coarse_vertex = append(ground.coarse.vertices);
         drawn.coarse_levels = ground.coarse.levels;

@@ -42,6 +42,7 @@ struct DrawGround {
     std::shared_ptr<const Terrain> terrain;  // may be null
     uint32_t first_vertex = 0, first_coarse_vertex = 0;
     std::vector<CoarseGround::Level> coarse_levels;
+    float steepest = 0.0f;  // of all its patches
 };
 
 struct SceneGeometry {

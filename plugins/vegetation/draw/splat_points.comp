@@ -35,8 +35,10 @@ void splat_shadow(Transform t, Entry entry, SunAxes axes, vec3 sun_plant, uvec4 
     vec2 first = max(ceil(low), vec2(0.0)), last = min(ceil(low + side), frame.size_px);
     if (!(p.z >= frame.near_w) || any(greaterThanEqual(first, last))) return;
     float depth = depth_of(t, position, p.z);
-    for (float y = first.y; y < last.y; y += 1.0)
-        for (float x = first.x; x < last.x; x += 1.0) write_pixel(ivec2(x, y), depth, 0u);
+    uint width = uint(frame.size_px.x), row = uint(first.y) * width + uint(first.x);
+    uint columns = uint(last.x - first.x), end = row + width * uint(last.y - first.y);
+    for (; row < end; row += width)
+        for (uint i = 0u; i < columns; ++i) write_texel(row + i, depth);
 }
 
 void main() {

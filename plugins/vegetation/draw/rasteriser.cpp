@@ -26,7 +26,7 @@ constexpr uint32_t k_cpu_columns = 4, k_cpu_rows = 64, k_gpu_columns = 1, k_gpu_
 
 struct LightBlock {
     vec4 to_sun, sun_color, zenith_color, horizon_color, ground_color, haze_color;
-    vec4 shadow_x, shadow_y, shadow_z, shadow_w, shadow;
+    vec4 shadow_x, shadow_y, shadow_z, shadow_w, sun_across, sun_along, shadow_growth_xy, shadow_growth_wz;
 };
 
 gpu::BufferSettings device_buffer(VkDeviceSize size_bytes, const char* name) {
@@ -500,6 +500,10 @@ void Rasteriser::set_frame(uint32_t slot, const WorkList::Layout& layout, const 
     map.big_triangle_limit = shadows_.big_limit;
 
     vec3 to_sun = normalize_or(light.direction_to_sun, vec3(0.0f));
+    const vec3 across = perpendicular_to(vec3(map.to_sun)), along = glm::cross(vec3(map.to_sun), across);
+    auto growth = [&](const vec4& row) {
+        return vec2(glm::dot(vec3(row), across), glm::dot(vec3(row), along));
+    };
     LightBlock block{vec4(to_sun, light.exposure),
                      vec4(light.sun_color, light.haze_density_per_m),
                      vec4(light.sky_zenith_color, 0.0f),
@@ -510,7 +514,10 @@ void Rasteriser::set_frame(uint32_t slot, const WorkList::Layout& layout, const 
                      map.row_y,
                      map.row_z,
                      map.row_w,
-                     vec4(map.size_px.x, 0.0f, 0.0f, 0.0f)};
+                     vec4(across, glm::dot(vec3(map.row_z), to_sun)),
+                     vec4(along, map.size_px.x),
+                     vec4(growth(map.row_x), growth(map.row_y)),
+                     vec4(growth(map.row_w), growth(map.row_z))};
     std::memcpy(slots_[slot].light.mapped(), &block, sizeof block);
 
     picture_.ranges = layout.picture;

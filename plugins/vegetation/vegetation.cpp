@@ -394,7 +394,7 @@ class VegetationSystems final : public Vegetation {
         double begin = now_ms();
         if (rested_ == 0) last_solved_px_ = budget_ > 0 ? solve(tiles, plants) : frame_.sample_distance_px;
         casters_.see(tiles, plants, geometry_, grounds_, frustum_, camera_.position_world, light_, drawn_,
-                     scene_bounds(), std::min(frame_plants_.nearest_m(tile_list_), above_ground_m_));
+                     uint64_t(rasteriser_->width()) * rasteriser_->height(), scene_bounds(), std::min(frame_plants_.nearest_m(tile_list_), above_ground_m_));
         const size_t run_count = tile_list_.runs().size();
         // The first part is the terrain's: should memory run out, the ground stays. The last one is the clouds'.
         work_.begin(run_count + 2 + casters_.part_count(), casters_.part_count());

@@ -50,7 +50,8 @@ class RasterTest : public ::testing::Test {
         EXPECT_EQ(layout.dropped_entries, 0u);
         auto frame = ring_.begin();
         ASSERT_TRUE(frame);
-        rasteriser_->set_frame(0, layout, camera_, light_, picture_);
+        ASSERT_TRUE(rasteriser_->make_shadow_map(shadow_.side_texels));
+        rasteriser_->set_frame(0, layout, camera_, light_, picture_, shadow_);
         graph_.record(frame->commands, frame->timestamps);
         ASSERT_TRUE(ring_.submit());
         ASSERT_TRUE(ring_.wait(frame->serial));
@@ -80,6 +81,7 @@ class RasterTest : public ::testing::Test {
     Camera camera_;
     Light light_;
     PictureSettings picture_;
+    ShadowSettings shadow_;
     WorkList work_;
     std::vector<uint64_t> words_;
 };

@@ -17,6 +17,13 @@ namespace {
 
 constexpr float k_paper_splat_factor = 1.3f;  // Deussen et al. 2002 say 1.2 to 1.5
 
+// Levels of detail are compared without shadows, against the reference without them; shadows by methods of their own.
+FrameSettings unshadowed() {
+    FrameSettings settings;
+    settings.shadows = ShadowKind::none;
+    return settings;
+}
+
 class FullMethod final : public AccuracyMethod {
   public:
     FullMethod(uint32_t samples, float filter_radius_px)
@@ -39,7 +46,7 @@ class FullMethod final : public AccuracyMethod {
         return {};
     }
     Result<DrawnFrame> frame(const Camera&, float, double) override {
-        FrameSettings settings;
+        FrameSettings settings = unshadowed();
         settings.level_of_detail = false;
         settings.filter_radius_px = filter_radius_px_;
         return DrawnFrame{original_, settings};
@@ -105,22 +112,22 @@ class HybridMethod final : public AccuracyMethod {
 };
 
 std::vector<Hybrid> hybrids() {
-    FrameSettings isotropic;
+    FrameSettings isotropic = unshadowed();
     isotropic.projection = ProjectionMode::isotropic;
     isotropic.splat_factor = k_paper_splat_factor;
     isotropic.filter_radius_px = 1.0f;  // the paper has neither
     isotropic.weigh_by_facing = false;
     FrameSettings printed = isotropic;
     printed.projection = ProjectionMode::printed;
-    FrameSettings unfiltered;
+    FrameSettings unfiltered = unshadowed();
     unfiltered.filter_radius_px = 1.0f;
-    FrameSettings alike;
+    FrameSettings alike = unshadowed();
     alike.weigh_by_facing = false;
-    FrameSettings no_leaves;
+    FrameSettings no_leaves = unshadowed();
     no_leaves.foliage = FoliageMode::points;
-    FrameSettings leaves;
+    FrameSettings leaves = unshadowed();
     leaves.foliage = FoliageMode::leaves;
-    FrameSettings unblended;
+    FrameSettings unblended = unshadowed();
     unblended.blend = false;
     CookSettings shuffled;
     shuffled.order = PrefixOrder::shuffled;
@@ -130,7 +137,7 @@ std::vector<Hybrid> hybrids() {
     leaf_lines.lines = LineParts::slender;
     return {
         {"hybrid, measured", "Points, lines and triangles by measured projections: the program's defaults.",
-         FrameSettings{}, std::nullopt, true},
+         unshadowed(), std::nullopt, true},
         {"hybrid, no leaves", "The defaults, but leaves are never joined: triangles and points alone.",
          no_leaves, std::nullopt, true},
         {"reduced leaves", "Leaves joined two by two wherever a part has them, before points.", leaves,
@@ -147,11 +154,11 @@ std::vector<Hybrid> hybrids() {
         {"hybrid, unblended", "The defaults, but points give way to triangles at once.", unblended,
          std::nullopt},
         {"hybrid, random order", "The defaults, but primitives come in the paper's random order.",
-         FrameSettings{}, shuffled},
-        {"points only", "The defaults, but stems turn into points as leaves do: no lines.", FrameSettings{},
+         unshadowed(), shuffled},
+        {"points only", "The defaults, but stems turn into points as leaves do: no lines.", unshadowed(),
          points},
         {"lines for needles", "The defaults, but needles and blades turn into lines, as in the paper.",
-         FrameSettings{}, leaf_lines},
+         unshadowed(), leaf_lines},
     };
 }
 
@@ -162,7 +169,7 @@ class ShadowMethod final : public AccuracyMethod {
     std::string name() const override { return name_; }
     std::string what() const override { return what_; }
     std::string quality_name() const override { return "texels"; }
-    std::vector<double> qualities() const override { return {4096, 2048, 1024, 512}; }
+    std::vector<double> qualities() const override { return {4096, 2048, 1024, 768, 512}; }
     double default_quality() const override { return 1024; }
     Status prepare(const MethodInput& input) override {
         original_ = input.original;
@@ -221,7 +228,7 @@ class SubstituteMethod final : public AccuracyMethod {
 
     Result<DrawnFrame> frame(const Camera& camera, float focal_px, double quality) override {
         const SubstituteScenes::Choice choice = scenes_->choose(camera, focal_px, quality);
-        FrameSettings settings;
+        FrameSettings settings = unshadowed();
         settings.sample_distance_px = float(quality);
         settings.weigh_by_facing = false;  // a billboard's texels are no leaves
         return DrawnFrame{choice.scene, settings, choice.revision};

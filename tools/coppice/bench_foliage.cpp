@@ -149,6 +149,7 @@ class TreeBench {
         const OpennessGrid openness(description_.parts, std::vector<bool>(description_.parts.size(), false));
         const Camera camera = host_->scene.camera_path.front().camera;
         FrameSettings settings;
+        settings.shadows = ShadowKind::none;
         settings.level_of_detail = false;
         MethodDrawer drawer(*host_);
         uint64_t revision = 0;
@@ -197,6 +198,7 @@ class TreeBench {
         const float focal_px = make_frustum(camera, host_->width, host_->height).focal_px;
         const SubstituteScenes::Choice choice = scenes.choose(camera, focal_px, k_leaf_px);
         FrameSettings settings;
+        settings.shadows = ShadowKind::none;
         settings.level_of_detail = false;
         MethodDrawer drawer(*host_);
         COPPICE_TRY(const FloatPicture picture,

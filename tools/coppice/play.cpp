@@ -150,9 +150,10 @@ void add_play(CLI::App& app, Command& chosen) {
     play->add_option("--shadows", options.settings.shadows,
                      "The sun's shadow map: none, uniform, perspective or light-space")
         ->transform(CLI::CheckedTransformer(shadow_kinds).description(""))
-        ->default_str("none");
-    play->add_option("--shadow-size", options.settings.shadow_side_texels, "Texels of a side of the shadow map")
-        ->check(CLI::Range(16, 16384))
+        ->default_str("light-space");
+    play->add_option("--shadow-size", options.settings.shadow_side_texels,
+                     "Texels of a side of the shadow map. 0: about as many texels as the picture has pixels")
+        ->check(CLI::Range(0, 16384))
         ->capture_default_str();
     play->add_option("--shadow-distance", options.settings.shadow_distance_m,
                      "Metres along the view up to which shadows are seen")

@@ -19,6 +19,13 @@ FrameSettings caster_settings(const FrameSettings& settings) {
     return of_casters;
 }
 
+// Not in steps of one texel: a window that is drawn larger would make a new map in every frame.
+uint32_t side_of(uint32_t wanted_texels, uint64_t pixel_count) {
+    constexpr uint32_t k_step = 64, k_most = 4096;
+    if (wanted_texels > 0) return wanted_texels;
+    return std::min((uint32_t(std::sqrt(double(pixel_count))) / k_step + 1) * k_step, k_most);
+}
+
 float farthest_along(const Box& box, vec3 direction) {
     const vec3 corner(direction.x > 0.0f ? box.max.x : box.min.x, direction.y > 0.0f ? box.max.y : box.min.y,
                       direction.z > 0.0f ? box.max.z : box.min.z);
@@ -30,12 +37,13 @@ float farthest_along(const Box& box, vec3 direction) {
 void FrameCasters::see(const TileList::Tiles& tiles, const TileList::Plants& plants,
                        const SceneGeometry& geometry, std::span<const Ground> grounds, const Frustum& view,
                        dvec3 camera_world, const Light& light, const FrameSettings& settings,
-                       const Box& scene_bounds, float nearest_m) {
+                       uint64_t pixel_count, const Box& scene_bounds, float nearest_m) {
     const vec3 to_sun = normalize_or(light.direction_to_sun, vec3(0.0f));
     const bool has_sun = to_sun != vec3(0.0f) && light.sun_color != vec3(0.0f);
     const float far_m = std::min(settings.shadow_distance_m, farthest_along(scene_bounds, view.forward));
-    side_texels_ = settings.shadows != ShadowKind::none && has_sun && far_m > view.near_m
-                       ? settings.shadow_side_texels
+    const bool is_lit = settings.view == RepresentationView::lit;
+    side_texels_ = settings.shadows != ShadowKind::none && is_lit && has_sun && far_m > view.near_m
+                       ? side_of(settings.shadow_side_texels, pixel_count)
                        : 0;
     if (!any()) return;
     to_sun_ = to_sun;

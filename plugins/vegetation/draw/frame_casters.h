@@ -9,11 +9,11 @@ namespace coppice {
 
 class FrameCasters {
   public:
-    // Without a sun, or with shadows off, there are none. scene_bounds: all that there is, relative to the camera;
+    // Without a sun, or with shadows off, there are none. pixel_count: of the picture; scene_bounds: all that there is, relative to the camera;
     // nearest_m: from the viewer to what is seen, about: the map is as fine as a pixel there.
     void see(const TileList::Tiles& tiles, const TileList::Plants& plants, const SceneGeometry& geometry,
              std::span<const Ground> grounds, const Frustum& view, dvec3 camera_world, const Light& light,
-             const FrameSettings& settings, const Box& scene_bounds, float nearest_m);
+             const FrameSettings& settings, uint64_t pixel_count, const Box& scene_bounds, float nearest_m);
 
     bool any() const { return side_texels_ > 0; }
     // There is no room for the map: shadows are off for the frame.

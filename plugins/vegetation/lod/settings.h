@@ -52,9 +52,9 @@ struct FrameSettings {
     bool level_of_detail = true;  // false: every triangle of everything in view
     bool blend = true;            // false: switch from points to triangles at once
     bool occlusion = true;  // false: what is behind the ground is drawn as well; the picture is the same
-    ShadowKind shadows = ShadowKind::none;
-    uint32_t shadow_side_texels = 1024;  // of the map
-    float shadow_distance_m = 1000.0f;   // along the view; what is farther is lit as without shadows
+    ShadowKind shadows = ShadowKind::light_space;
+    uint32_t shadow_side_texels = 0;    // of the square map; 0: about as many texels as the picture has pixels
+    float shadow_distance_m = 1000.0f;  // along the view; what is farther is lit as without shadows
     RepresentationView view = RepresentationView::lit;
     // Each pixel shows its sample and its neighbours' under a tent of this radius, [1, 2] px; 1: its own alone. Leaves
     // are finer than pixels, and a sample of one point a pixel is far from the pixel's mean.

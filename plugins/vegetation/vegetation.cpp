@@ -320,7 +320,8 @@ class VegetationSystems final : public Vegetation {
         for (int round = 0; round < k_most_rounds; ++round) {
             list(tiles, plants, drawn_.sample_distance_px);
             if (budget_ > 0) solve(tiles, plants);
-            residency_->wish(tile_list_.wishes());
+            list_casters(tiles, plants);
+            wish();
             residency_->wait();
             if (!residency_->update(world, chunks_.front(), geometry_, *rasteriser_, slot_, true)) return;
         }
@@ -389,12 +390,25 @@ class VegetationSystems final : public Vegetation {
         return solved_px;
     }
 
+    // After what is seen has been found, and its d'.
+    void list_casters(const TileList::Tiles& tiles, const TileList::Plants& plants) {
+        casters_.list(tiles, plants, geometry_, grounds_, frustum_, camera_.position_world, light_, drawn_,
+                      uint64_t(rasteriser_->width()) * rasteriser_->height(), scene_bounds(),
+                      std::min(frame_plants_.nearest_m(tile_list_), above_ground_m_));
+    }
+
+    void wish() {
+        wishes_.assign(tile_list_.wishes().begin(), tile_list_.wishes().end());
+        wishes_.insert(wishes_.end(), casters_.wishes().begin(), casters_.wishes().end());
+        residency_->wish(wishes_);
+    }
+
     void expand(const TileList::Tiles& tiles, const TileList::Plants& plants) {
         if (settled_) return;
         double begin = now_ms();
         if (rested_ == 0) last_solved_px_ = budget_ > 0 ? solve(tiles, plants) : frame_.sample_distance_px;
-        casters_.see(tiles, plants, geometry_, grounds_, frustum_, camera_.position_world, light_, drawn_,
-                     uint64_t(rasteriser_->width()) * rasteriser_->height(), scene_bounds(), std::min(frame_plants_.nearest_m(tile_list_), above_ground_m_));
+        list_casters(tiles, plants);
+        casters_.see(geometry_);
         const size_t run_count = tile_list_.runs().size();
         // The first part is the terrain's: should memory run out, the ground stays. The last one is the clouds'.
         work_.begin(run_count + 2 + casters_.part_count(), casters_.part_count());
@@ -402,7 +416,7 @@ class VegetationSystems final : public Vegetation {
         report_.terrain_triangles = ground_expander_.expand(ground_list_.in_view(), geometry_, frustum_,
                                                             ground_error_px(drawn_), work_.part(0));
         casters_.draw(geometry_, drawn_, resting_.index, work_, run_count + 2);
-        if (residency_) residency_->wish(tile_list_.wishes());
+        if (residency_) wish();
         report_.lod_ms = now_ms() - begin;
     }
 
@@ -538,6 +552,7 @@ class VegetationSystems final : public Vegetation {
     GroundExpander ground_expander_;
     FramePlants frame_plants_;
     FrameCasters casters_;
+    std::vector<TileWish> wishes_;
     bool map_refused_ = false;  // there is no room for the shadow map
     static constexpr float k_list_reach = 1.25f;
     float listed_px_ = 0.0f,

@@ -162,15 +162,15 @@ std::vector<Hybrid> hybrids() {
     };
 }
 
-// The defaults with shadows; quality is the map's side.
+// The defaults with shadows; quality is how large a texel is.
 class ShadowMethod final : public AccuracyMethod {
   public:
     ShadowMethod(const char* name, const char* what, ShadowKind kind) : name_(name), what_(what), kind_(kind) {}
     std::string name() const override { return name_; }
     std::string what() const override { return what_; }
-    std::string quality_name() const override { return "texels"; }
-    std::vector<double> qualities() const override { return {4096, 2048, 1024, 768, 512}; }
-    double default_quality() const override { return 1024; }
+    std::string quality_name() const override { return "1024 / side"; }
+    std::vector<double> qualities() const override { return {0.25, 0.5, 1.0, 1.5, 2.0}; }
+    double default_quality() const override { return 1.0; }
     Status prepare(const MethodInput& input) override {
         original_ = input.original;
         return {};
@@ -178,7 +178,7 @@ class ShadowMethod final : public AccuracyMethod {
     Result<DrawnFrame> frame(const Camera&, float, double quality) override {
         FrameSettings settings;
         settings.shadows = kind_;
-        settings.shadow_side_texels = uint32_t(quality);
+        settings.shadow_side_texels = uint32_t(1024.0 / quality);
         return DrawnFrame{original_, settings};
     }
 

@@ -6,10 +6,9 @@ namespace coppice {
 
 std::vector<Ground> make_grounds(std::shared_ptr<const Terrain> terrain) {
     if (!terrain) return {};
-    Box bounds = terrain->bounds_local();
-    const vec3 origin = vec3(terrain->origin_world());
-    bounds.min += origin;
-    bounds.max += origin;
+    const Box local = bounds_without_skirts(*terrain);
+    const dvec3 origin = terrain->origin_world();
+    const Box bounds{vec3(origin + dvec3(local.min)), vec3(origin + dvec3(local.max))};
     CoarseGround coarse = make_coarse_ground(*terrain);
     return {{std::move(terrain), {}, bounds, std::move(coarse)}};
 }

@@ -34,7 +34,7 @@ float farthest_along(const Box& box, vec3 direction) {
 
 }  // namespace
 
-void FrameCasters::see(const TileList::Tiles& tiles, const TileList::Plants& plants,
+void FrameCasters::list(const TileList::Tiles& tiles, const TileList::Plants& plants,
                        const SceneGeometry& geometry, std::span<const Ground> grounds, const Frustum& view,
                        dvec3 camera_world, const Light& light, const FrameSettings& settings,
                        uint64_t pixel_count, const Box& scene_bounds, float nearest_m) {
@@ -49,14 +49,12 @@ void FrameCasters::see(const TileList::Tiles& tiles, const TileList::Plants& pla
     to_sun_ = to_sun;
     frustum_ = make_caster_frustum(view, to_sun, far_m);
     const FrameSettings of_casters = caster_settings(settings);
-    const float spread_px =
-        widest_spread_px(geometry.least_importance, geometry.most_line_width, of_casters);
+    spread_px_ = widest_spread_px(geometry.least_importance, geometry.most_line_width, of_casters);
     tiles_.list(tiles, plants, frustum_, camera_world,
                 {of_casters.level_of_detail
                      ? of_casters.sample_distance_px / std::sqrt(of_casters.splat_factor)
                      : 0.0f,
-                 vec3(0.0f), nullptr, spread_px, 0.0f});
-    plants_.see(tiles_, geometry, frustum_, nullptr, spread_px);
+                 vec3(0.0f), nullptr, spread_px_, 0.0f});
     grounds_.list(grounds, frustum_, camera_world, ground_error_px(settings));
 
     // Sides of the picture, from its planes.
@@ -66,6 +64,10 @@ void FrameCasters::see(const TileList::Tiles& tiles, const TileList::Plants& pla
     const float near_m = std::clamp(nearest_m, view.near_m, 0.5f * (view.near_m + far_m));
     view_ = fit_shadow(settings.shadows, {view.right, view.up, view.forward, tangent_x, tangent_y, near_m, far_m,
                                           scene_bounds, scene_bounds, to_sun, side_texels_});
+}
+
+void FrameCasters::see(const SceneGeometry& geometry) {
+    if (any()) plants_.see(tiles_, geometry, frustum_, nullptr, spread_px_);
 }
 
 uint32_t FrameCasters::plant_count() const {

@@ -9,11 +9,13 @@ namespace coppice {
 
 class FrameCasters {
   public:
-    // Without a sun, or with shadows off, there are none. pixel_count: of the picture; scene_bounds: all that there is, relative to the camera;
+    // Which tiles, and the map's view. Without a sun, or with shadows off, there are none. pixel_count: of the picture; scene_bounds: all that there is, relative to the camera;
     // nearest_m: from the viewer to what is seen, about: the map is as fine as a pixel there.
-    void see(const TileList::Tiles& tiles, const TileList::Plants& plants, const SceneGeometry& geometry,
-             std::span<const Ground> grounds, const Frustum& view, dvec3 camera_world, const Light& light,
-             const FrameSettings& settings, uint64_t pixel_count, const Box& scene_bounds, float nearest_m);
+    void list(const TileList::Tiles& tiles, const TileList::Plants& plants, const SceneGeometry& geometry,
+              std::span<const Ground> grounds, const Frustum& view, dvec3 camera_world, const Light& light,
+              const FrameSettings& settings, uint64_t pixel_count, const Box& scene_bounds, float nearest_m);
+    // The plants of the tiles listed last.
+    void see(const SceneGeometry& geometry);
 
     bool any() const { return side_texels_ > 0; }
     // There is no room for the map: shadows are off for the frame.
@@ -21,7 +23,9 @@ class FrameCasters {
     uint32_t side_texels() const { return side_texels_; }
     const ShadowView& view() const { return view_; }
     // What of a streamed world is missing.
-    std::span<const TileWish> wishes() const { return tiles_.wishes(); }
+    std::span<const TileWish> wishes() const {
+        return any() ? tiles_.wishes() : std::span<const TileWish>();
+    }
 
     uint32_t plant_count() const;  // that throw shadows, without those that clouds stand for
     // Of the work list; 0 without shadows.
@@ -38,6 +42,7 @@ class FrameCasters {
     FramePlants plants_;
     ShadowView view_;
     uint32_t side_texels_ = 0;
+    float spread_px_ = 0.0f;  // of primitives, beside their geometry
 };
 
 }  // namespace coppice

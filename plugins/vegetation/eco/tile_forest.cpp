@@ -62,19 +62,27 @@ vec3 mean_color(const Terrain& terrain) {
     return area_m2 > 0.0 ? vec3(sum / area_m2) : vec3(0.0f);
 }
 
-DraftGround ground_of(const std::shared_ptr<const Terrain>& terrain) {
-    DraftGround ground;
-    ground.ground.terrain = terrain;
-    ground.ground.without_gaps = true;
-    ground.ground.mean_color_linear = mean_color(*terrain);
-    Box bounds = terrain->bounds_local();
-    // Which holds the skirts as well: they lean into the neighbour.
-    if (const TerrainLayout layout = terrain->layout(); layout.cells_x > 0) {
+}  // namespace
+
+Box bounds_without_skirts(const Terrain& terrain) {
+    Box bounds = terrain.bounds_local();
+    if (const TerrainLayout layout = terrain.layout(); layout.cells_x > 0) {
         bounds.min.x = layout.corner_local.x;
         bounds.min.z = layout.corner_local.y;
         bounds.max.x = layout.corner_local.x + float(layout.cells_x) * layout.cell_m;
         bounds.max.z = layout.corner_local.y + float(layout.cells_z) * layout.cell_m;
     }
+    return bounds;
+}
+
+namespace {
+
+DraftGround ground_of(const std::shared_ptr<const Terrain>& terrain) {
+    DraftGround ground;
+    ground.ground.terrain = terrain;
+    ground.ground.without_gaps = true;
+    ground.ground.mean_color_linear = mean_color(*terrain);
+    const Box bounds = bounds_without_skirts(*terrain);
     ground.low = terrain->origin_world() + dvec3(bounds.min);
     ground.high = terrain->origin_world() + dvec3(bounds.max);
     ground.area_m2 = ground.area_of_bounds_m2();

@@ -33,6 +33,9 @@ struct ForestRow {
     uint64_t plant_count = 0, triangle_count = 0;  // of all below
 };
 
+// Relative to its origin. Skirts hang below and lean beside the ground, into a neighbour's: from above they are left out.
+Box bounds_without_skirts(const Terrain& terrain);
+
 // The ground under a row, in its space.
 struct ForestGround {
     std::shared_ptr<const Terrain> terrain;  // null: the grounds of the places below it

@@ -35,6 +35,7 @@ struct PlayCommand {
     PlayOptions options;
     std::string headless;
     float sample_distance_px = 0.0f;
+    std::string sun;
     bool full = false;
 };
 
@@ -59,6 +60,9 @@ Status run(PlayCommand command) {
     PlayOptions& options = command.options;
     options.settings.level_of_detail = !command.full;
     if (command.sample_distance_px > 0.0f) options.sample_distance_px = command.sample_distance_px;
+    if (!command.sun.empty()) {
+        COPPICE_TRY(options.sun_deg, parse_sun(command.sun));
+    }
     options.headless = !command.headless.empty();
     if (!options.headless) {
         if (!window_available())
@@ -151,6 +155,9 @@ void add_play(CLI::App& app, Command& chosen) {
                      "The sun's shadow map: none, uniform, perspective or light-space")
         ->transform(CLI::CheckedTransformer(shadow_kinds).description(""))
         ->default_str("light-space");
+    play->add_option("--sun", command->sun,
+                     "Azimuth and elevation of the sun in degrees, as 135,20, in place of the scene's own")
+        ->type_name("AZIMUTH,ELEVATION");
     play->add_option("--shadow-size", options.settings.shadow_side_texels,
                      "Texels of a side of the shadow map. 0: about as many texels as the picture has pixels")
         ->check(CLI::Range(0, 16384))

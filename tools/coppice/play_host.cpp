@@ -7,6 +7,7 @@
 #include "plugins/vegetation/eco/load_scene.h"
 #include "plugins/vegetation/eco/make_tiles.h"
 #include "plugins/vegetation/eco/plant_scene.h"
+#include "plugins/vegetation/eco/read_light.h"
 #include "plugins/vegetation/eco/shade_ground.h"
 #include "runtime/core/file.h"
 #include "runtime/core/hash.h"
@@ -154,6 +155,9 @@ Status PlayHost::create_vegetation(const PlayOptions& options, std::vector<Plant
     if (!interface)
         return fail(ErrorId::name_unknown, "", "plugin vegetation", "does not provide its interface",
                     "install the plugin of this version");
+    if (options.sun_deg)
+        (forest_ ? forest_->light : scene.light).direction_to_sun =
+            direction_to_sun(options.sun_deg->x, options.sun_deg->y);
     VegetationSettings settings;
     settings.device = device.get();
     settings.world = &world;

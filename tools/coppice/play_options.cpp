@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <fmt/format.h>
 #include "runtime/core/picture.h"
 
@@ -9,7 +10,8 @@ namespace coppice {
 namespace {
 
 // The whole of text as a number, or false.
-bool parse_number(std::string_view text, uint32_t& number) {
+template <class Number>
+bool parse_number(std::string_view text, Number& number) {
     auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
     return error == std::errc() && end == text.data() + text.size() && !text.empty();
 }
@@ -25,6 +27,17 @@ Status parse_size(const char* option, const std::string& text, uint32_t& width, 
         return fail(ErrorId::usage, "", option, fmt::format("'{}' is not a picture size", text),
                     "write WIDTHxHEIGHT, each from 1 to 16384, as in 1280x720");
     return {};
+}
+
+Result<vec2> parse_sun(const std::string& text) {
+    const size_t comma = std::min(text.find(','), text.size());
+    const std::string_view view = text, second = view.substr(std::min(comma + 1, text.size()));
+    vec2 sun_deg(0.0f);
+    if (!parse_number(view.substr(0, comma), sun_deg.x) || !parse_number(second, sun_deg.y) ||
+        !(std::fabs(sun_deg.x) <= 360.0f) || !(std::fabs(sun_deg.y) <= 90.0f))
+        return fail(ErrorId::usage, "", "--sun", fmt::format("'{}' is not where a sun stands", text),
+                    "write AZIMUTH,ELEVATION in degrees, as in 135,20");
+    return sun_deg;
 }
 
 std::vector<uint32_t> spread_frames(uint32_t count, uint32_t frame_count) {

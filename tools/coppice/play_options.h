@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 #include "plugins/vegetation/lod/settings.h"
+#include "runtime/core/math.h"
 #include "runtime/core/result.h"
 
 namespace coppice {
@@ -20,6 +21,7 @@ struct PlayOptions {
     uint32_t warmup = 5;                      // frames drawn before the first measured one
     std::string pictures = "4";               // see chosen_frames()
     std::optional<float> sample_distance_px;  // empty: what the scene recommends
+    std::optional<vec2> sun_deg;              // azimuth and elevation; empty: the scene's own sun
     FrameSettings settings;
     bool compare_full = false;
     uint32_t compare_frames = 5;
@@ -32,6 +34,9 @@ struct PlayOptions {
 
 // "1280x720". Errors: usage.
 Status parse_size(const char* option, const std::string& text, uint32_t& width, uint32_t& height);
+
+// "135,20": azimuth and elevation in degrees, within [-360, 360] and [-90, 90]. Errors: usage.
+Result<vec2> parse_sun(const std::string& text);
 
 // "0,30,60": these frames; "4": so many, evenly spread, the first and the last among them; "0": none.
 // Sorted, without doubles, all below frame_count (others are left out). Errors: usage.

@@ -2,18 +2,22 @@
 
 namespace coppice {
 
-Light read_light(JsonObject& root) {
+vec3 direction_to_sun(float azimuth_deg, float elevation_deg) {
     constexpr float k_radians = k_pi / 180.0f;
+    const float azimuth = azimuth_deg * k_radians, elevation = elevation_deg * k_radians;
+    return vec3(portable_sin(azimuth) * portable_cos(elevation), portable_sin(elevation),
+                -portable_cos(azimuth) * portable_cos(elevation));
+}
+
+Light read_light(JsonObject& root) {
     Light light;
     if (const nlohmann::json* sun = root.find("sun"); sun && sun->is_null()) {
         light.direction_to_sun = vec3(0.0f);
     } else if (sun) {
         JsonObject object = root.object("sun");
-        float azimuth = object.real("azimuth_deg", -360.0f, 360.0f, 137.0f) * k_radians;
-        float elevation = object.real("elevation_deg", -90.0f, 90.0f, 49.0f) * k_radians;
+        const float azimuth_deg = object.real("azimuth_deg", -360.0f, 360.0f, 137.0f);
         light.direction_to_sun =
-            vec3(portable_sin(azimuth) * portable_cos(elevation), portable_sin(elevation),
-                 -portable_cos(azimuth) * portable_cos(elevation));
+            direction_to_sun(azimuth_deg, object.real("elevation_deg", -90.0f, 90.0f, 49.0f));
         light.sun_color = object.color("color", 100.0f, light.sun_color);
         object.close();
     }

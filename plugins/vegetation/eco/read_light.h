@@ -5,6 +5,9 @@
 
 namespace coppice {
 
+// Azimuth clockwise from -z (north), as on a compass; elevation over the horizon.
+vec3 direction_to_sun(float azimuth_deg, float elevation_deg);
+
 // Of the scene's or mosaic's root; faults go to the document.
 Light read_light(JsonObject& root);
 

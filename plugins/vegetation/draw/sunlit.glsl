@@ -19,7 +19,8 @@ float sunlit_share(Light light, vec3 place, vec3 normal, float unknown) {
     vec2 column = light.shadow_growth_xy.xy - at.x * light.shadow_growth_wz.xy;
     vec2 row = light.shadow_growth_xy.zw - at.y * light.shadow_growth_wz.xy;
     vec2 depth = light.shadow_growth_wz.zw - at.z * light.shadow_growth_wz.xy;
-    float texel_m = w * inversesqrt(max(min(dot(column, column), dot(row, row)), 1.0e-20));
+    // The longer side of a texel, which need not be upright.
+    float texel_m = w * sqrt(max(dot(column, column), dot(row, row))) / max(abs(column.x * row.y - column.y * row.x), 1.0e-20);
     float facing = dot(normal, light.to_sun.xyz);
     float off = sign(facing) * sqrt(max(1.0 - facing * facing, 0.0)) * k_normal_offset;
     vec2 off_across = vec2(dot(normal, light.sun_across.xyz), dot(normal, light.sun_along.xyz)) * off;

@@ -85,8 +85,9 @@ TEST(Includes, OnlyTheBudgetReadsTheReportBackwards) {
 }
 
 TEST(Includes, DrawingNeverIncludesTheCook) {
-    for (const char* folder : {"plugins/vegetation/draw", "plugins/vegetation/cull", "plugins/vegetation/lod",
-                               "plugins/vegetation/eco", "plugins/vegetation/plant"})
+    for (const char* folder :
+         {"plugins/vegetation/draw", "plugins/vegetation/cull", "plugins/vegetation/lod",
+          "plugins/vegetation/eco", "plugins/vegetation/plant", "plugins/vegetation/shadow"})
         for (const Include& include : find_includes(folder))
             EXPECT_FALSE(include.to.starts_with("plugins/vegetation/cook")) << describe(include);
 }

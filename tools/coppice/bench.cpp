@@ -13,6 +13,7 @@
 #include "tools/coppice/bench_raster.h"
 #include "tools/coppice/bench_scale.h"
 #include "tools/coppice/bench_scenes.h"
+#include "tools/coppice/bench_stability.h"
 #include "tools/coppice/command.h"
 
 namespace coppice {
@@ -97,6 +98,8 @@ const std::vector<Bench>& benches() {
          bench_scale},
         {"scenes", "pines, palms, landscape and sunflowers at 795x700: rate, primitives, memory",
          bench_table},
+        {"stability", "laws of the shadow maps over every angle of light and view: worst values",
+         [](const BenchSettings&) { return bench_stability(); }},
         {"stand", "640, 5,000 and 50,000 trees, against other programs' times", bench_stand},
     };
     return k_benches;

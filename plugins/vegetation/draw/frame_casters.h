@@ -40,7 +40,7 @@ class FrameCasters {
     GroundList grounds_;
     GroundExpander ground_expander_;
     FramePlants plants_;
-    ShadowView view_;
+    ShadowView view_{};
     uint32_t side_texels_ = 0;
     float spread_px_ = 0.0f;  // of primitives, beside their geometry
 };

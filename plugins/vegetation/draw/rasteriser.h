@@ -32,7 +32,7 @@ struct PictureSettings {
 // The frame's shadow map.
 struct ShadowSettings {
     uint32_t side_texels = 0;  // 0: none, and no pass is made
-    ShadowView view;
+    ShadowView view{};
 };
 
 class Rasteriser {

@@ -1,89 +1,72 @@
+// The corners of two convex bodies' common part are the ends of each body's edges, cut by the other body: no planes are
+// intersected with each other, so that nothing is decided by a tolerance.
 #include "plugins/vegetation/shadow/receiver_hull.h"
+
+#include <algorithm>
+#include <array>
 
 namespace coppice {
 namespace {
 
 struct Plane {
-    dvec3 normal;  // dot(normal, p) + offset >= 0 inside
+    dvec3 normal;  // inside: dot(normal, p) + offset >= 0
     double offset;
-    double inside(dvec3 p) const { return glm::dot(normal, p) + offset; }
 };
+using Body = std::array<Plane, 6>;
+using Corners = std::array<dvec3, 8>;  // bit 0, 1, 2 of the index: which side along the three axes
 
-struct Face {
-    std::array<dvec3, 10> corners;
-    size_t count = 0;
-    void add(dvec3 p) { corners[count++] = p; }
-};
-
-// A convex face keeps at most one corner more.
-Face clip(const Face& face, const Plane& plane) {
-    Face kept;
-    for (size_t i = 0; i < face.count; ++i) {
-        const dvec3 a = face.corners[i], b = face.corners[(i + 1) % face.count];
-        const double in_a = plane.inside(a), in_b = plane.inside(b);
-        if (in_a >= 0.0 && kept.count < kept.corners.size()) kept.add(a);
-        if ((in_a < 0.0) != (in_b < 0.0) && kept.count < kept.corners.size())
-            kept.add(a + (b - a) * (in_a / (in_a - in_b)));
+void add_cut_edge(dvec3 from, dvec3 to, const Body& body, std::vector<dvec3>& ends) {
+    double first = 0.0, last = 1.0;
+    for (const Plane& plane : body) {
+        const double at_from = glm::dot(plane.normal, from) + plane.offset;
+        const double at_to = glm::dot(plane.normal, to) + plane.offset;
+        if (at_from < 0.0 && at_to < 0.0) return;
+        if (at_from < 0.0) first = std::max(first, at_from / (at_from - at_to));
+        if (at_to < 0.0) last = std::min(last, at_from / (at_from - at_to));
     }
-    return kept;
+    if (first > last) return;
+    ends.push_back(from + (to - from) * first);
+    ends.push_back(from + (to - from) * last);
 }
 
-using Corners = std::array<dvec3, 8>;  // bit 0, 1, 2: the far side along three axes
-
-// The six faces of what has such corners.
-std::array<Face, 6> faces_of(const Corners& corners) {
-    std::array<Face, 6> faces;
-    for (size_t axis = 0; axis < 3; ++axis)
-        for (size_t side = 0; side < 2; ++side) {
-            const size_t u = size_t(1) << ((axis + 1) % 3), v = size_t(1) << ((axis + 2) % 3);
-            const size_t first = side << axis;
-            for (const size_t corner : {first, first | u, first | u | v, first | v})
-                faces[2 * axis + side].add(corners[corner]);
-        }
-    return faces;
+void add_cut_edges(const Corners& corners, const Body& body, std::vector<dvec3>& ends) {
+    for (uint32_t corner = 0; corner < 8; ++corner)
+        for (uint32_t axis = 1; axis < 8; axis <<= 1)
+            if (!(corner & axis)) add_cut_edge(corners[corner], corners[corner | axis], body, ends);
 }
 
 }  // namespace
 
-ReceiverHull::ReceiverHull(const ShadowScene& scene) {
-    const dvec3 right(scene.right), up(scene.up), forward(scene.forward);
-    const dvec3 low(scene.receivers.min), high(scene.receivers.max);
-    const double tangent_x = double(scene.tangent_x), tangent_y = double(scene.tangent_y);
-    Corners of_view, of_box;
-    for (size_t i = 0; i < 8; ++i) {
-        const double distance = double(i & 4 ? scene.far_m : scene.near_m);
-        of_view[i] = (forward + right * (i & 1 ? tangent_x : -tangent_x) + up * (i & 2 ? tangent_y : -tangent_y)) *
-                     distance;
-        of_box[i] = {i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z};
+std::vector<dvec3> receiver_hull(const CheckedShadowScene& scene) {
+    const dvec3 middle = scene.forward * scene.near_m;
+    if (scene.receivers.empty()) return {middle};
+    const DoubleBox& box = scene.receivers;
+    Corners box_corners, view_corners;
+    for (uint32_t i = 0; i < 8; ++i) {
+        box_corners[i] = dvec3(i & 1 ? box.max.x : box.min.x, i & 2 ? box.max.y : box.min.y,
+                               i & 4 ? box.max.z : box.min.z);
+        view_corners[i] = (scene.forward + scene.right * (i & 1 ? scene.tangent_x : -scene.tangent_x) +
+                           scene.up * (i & 2 ? scene.tangent_y : -scene.tangent_y)) *
+                          (i & 4 ? scene.far_m : scene.near_m);
     }
-    const std::array<Plane, 6> view_planes{{{forward, -double(scene.near_m)},
-                                            {-forward, double(scene.far_m)},
-                                            {forward * tangent_x + right, 0.0},
-                                            {forward * tangent_x - right, 0.0},
-                                            {forward * tangent_y + up, 0.0},
-                                            {forward * tangent_y - up, 0.0}}};
-    std::array<Plane, 6> box_planes;
-    for (int axis = 0; axis < 3; ++axis) {
-        dvec3 normal(0.0);
-        normal[axis] = 1.0;
-        box_planes[2 * axis] = {normal, -low[axis]};
-        box_planes[2 * axis + 1] = {-normal, high[axis]};
-    }
-    auto add = [&](const Corners& corners, const std::array<Plane, 6>& planes) {
-        for (Face face : faces_of(corners)) {
-            for (const Plane& plane : planes) face = clip(face, plane);
-            for (size_t i = 0; i < face.count; ++i)
-                if (std::isfinite(face.corners[i].x + face.corners[i].y + face.corners[i].z))
-                    places_[count_++] = face.corners[i];
-        }
-    };
-    if (low.x <= high.x && low.y <= high.y && low.z <= high.z) {
-        add(of_view, box_planes);
-        add(of_box, view_planes);
-    }
-    if (count_ > 0) return;
-    const dvec3 ahead = forward * double(scene.near_m);
-    places_[count_++] = std::isfinite(ahead.x + ahead.y + ahead.z) ? ahead : dvec3(0.0);
+    const Body box_body{{{dvec3(1, 0, 0), -box.min.x},
+                         {dvec3(-1, 0, 0), box.max.x},
+                         {dvec3(0, 1, 0), -box.min.y},
+                         {dvec3(0, -1, 0), box.max.y},
+                         {dvec3(0, 0, 1), -box.min.z},
+                         {dvec3(0, 0, -1), box.max.z}}};
+    const Body view_body{{{scene.forward, -scene.near_m},
+                          {-scene.forward, scene.far_m},
+                          {scene.forward * scene.tangent_x + scene.right, 0.0},
+                          {scene.forward * scene.tangent_x - scene.right, 0.0},
+                          {scene.forward * scene.tangent_y + scene.up, 0.0},
+                          {scene.forward * scene.tangent_y - scene.up, 0.0}}};
+    std::vector<dvec3> corners;
+    corners.reserve(48);
+    add_cut_edges(box_corners, view_body, corners);
+    add_cut_edges(view_corners, box_body, corners);
+    if (corners.empty()) corners.push_back(middle);
+    return corners;
 }
 
 }  // namespace coppice

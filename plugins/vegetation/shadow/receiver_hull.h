@@ -1,23 +1,11 @@
-// What is seen and may be in shadow: the view between its near and far planes, clipped by the box that holds all receivers.
+// What receives shadows in the picture: the view frustum, cut by the box of receivers, as the corners of a convex body.
 #pragma once
-#include <array>
-#include <span>
-#include "plugins/vegetation/shadow/shadow_view.h"
+#include <vector>
+#include "plugins/vegetation/shadow/shadow_scene.h"
 
 namespace coppice {
 
-// Places whose convex hull it is, with repetitions. Never empty: where nothing can be seen, the middle of the view's near plane.
-class ReceiverHull {
-  public:
-    explicit ReceiverHull(const ShadowScene& scene);
-    std::span<const dvec3> places() const { return std::span(places_).first(count_); }
-
-    // Twelve faces, of four corners each, clipped by six planes.
-    static constexpr size_t k_most_places = 12 * 10;
-
-  private:
-    std::array<dvec3, k_most_places> places_;
-    size_t count_ = 0;
-};
+// At most 48 corners, some twice. Never empty: where nothing can be seen, the middle of the near plane.
+std::vector<dvec3> receiver_hull(const CheckedShadowScene& scene);
 
 }  // namespace coppice

@@ -1,89 +1,69 @@
-// Perspective shadow maps (Stamminger and Drettakis 2002): the sun, a point or a direction in the viewer's space after projection, looks
-// at what the viewer sees there. All their cases are one here: with the sun's homogeneous place l = (l.xyz, l.w), which lies at infinity
-// in the world, the map's rows in projected space q are l.w (e . q.xyz) - (e . l.xyz) q.w for three axes e, and those are at right
-// angles to the sun whatever the sign of l.w.
-#include "plugins/vegetation/shadow/light_plane.h"
+// The map of Stamminger and Drettakis 2002: the sun, moved by the viewer's projection, looks at the receivers moved
+// likewise. Source: the paper, 4; ERRATA 6. Deviates: its three cases (the sun beside, before and behind the viewer: at
+// infinity, a point, a point that takes light in) are one formula here, without a threshold. Let (X, Y, Z, W)(p) be the
+// projection of a place and L, L_w that of the direction to the sun. What the moved sun sees at p is in the direction
+//     D(p) = L_w (X, Y, Z)(p) - L W(p),
+// whichever sign L_w has, and for L_w = 0 as well; and looked at along the unit vector d towards the middle of the
+// moved receivers, w = dot(d, D(p)). D is zero for the sun itself, so that w is a function of the light's plane.
+#include <algorithm>
+#include "plugins/vegetation/shadow/fit_plane_map.h"
+#include "plugins/vegetation/shadow/receiver_hull.h"
+#include "plugins/vegetation/shadow/view_angle.h"
 
 namespace coppice {
 namespace {
 
-// The infinitely far lies at least at this depth of projected space, in which receivers end at 1: the nearer, the more of the map is
-// spent on what is near.
-constexpr double k_least_infinity = 1.02;
-// Of a receiver over another's: w beyond this would leave hardly a texel to the farther.
-constexpr double k_most_w_ratio = 50.0;
-constexpr int k_rounds = 40;
-
-struct Projection {
-    dvec4 x, y, z, w;  // rows
-};
-
-// Of a camera slid back by back_m, whose angles of view are refitted around the receivers.
-Projection virtual_camera(const ShadowScene& scene, const ReceiverHull& hull, double back_m) {
-    const dvec3 right(scene.right), up(scene.up), forward(scene.forward);
-    double tangent_x = 1e-9, tangent_y = 1e-9, near_m = INFINITY, far_m = 0.0;
-    for (const dvec3& p : hull.places()) {
-        const double distance = glm::dot(forward, p) + back_m;
-        tangent_x = std::max(tangent_x, std::fabs(glm::dot(right, p)) / distance);
-        tangent_y = std::max(tangent_y, std::fabs(glm::dot(up, p)) / distance);
-        near_m = std::min(near_m, distance);
-        far_m = std::max(far_m, distance);
-    }
-    far_m = std::max(far_m, near_m * (1.0 + 1e-6));
-    const double infinity = far_m / (far_m - near_m);
-    return {dvec4(right / tangent_x, 0.0), dvec4(up / tangent_y, 0.0),
-            dvec4(forward * infinity, (back_m - near_m) * infinity), dvec4(forward, back_m)};
-}
-
-LightPlaneRows rows_of(const ShadowScene& scene, const ReceiverHull& hull, double back_m) {
-    const Projection camera = virtual_camera(scene, hull, back_m);
-    const dvec3 to_sun(scene.to_sun);
-    const dvec3 sun(glm::dot(dvec3(camera.x), to_sun), glm::dot(dvec3(camera.y), to_sun),
-                    glm::dot(dvec3(camera.z), to_sun));
-    const double sun_w = glm::dot(dvec3(camera.w), to_sun);
-    auto row = [&](dvec3 e) {
-        return (camera.x * e.x + camera.y * e.y + camera.z * e.z) * sun_w - camera.w * glm::dot(e, sun);
-    };
-    // From the sun to the middle of what is seen.
-    const dvec3 ahead = dvec3(0.0, 0.0, 0.5) * sun_w - sun;
-    const double length = glm::length(ahead);
-    if (!(length > 0.0)) return uniform_rows(view_axes(scene));
-    const dvec3 axis = ahead / length;
-    // The map's rows go away from the viewer; where it looks along the sun's rays, upwards.
-    const dvec3 away = std::fabs(axis.z) < 0.9999 ? dvec3(0, 0, 1) : dvec3(0, 1, 0);
-    const dvec3 across = glm::normalize(glm::cross(away, axis));
-    return {row(across), row(glm::cross(axis, across)), row(axis)};
-}
-
-// Of w, over the receivers; infinite where one lies behind the sun's picture plane.
-double w_ratio(const LightPlaneRows& rows, const ReceiverHull& hull) {
-    double least = INFINITY, most = 0.0;
-    for (const dvec3& p : hull.places()) {
-        const double w = at_place(rows.w, p);
-        least = std::min(least, w);
-        most = std::max(most, w);
-    }
-    return least > 0.0 ? most / least : INFINITY;
-}
+// Infinity's depth in the space moved to. 1 is the viewer's own projection, whose sun may stand among the receivers.
+constexpr double k_least_infinity = 1.05;
+constexpr double k_whole_sine = 0.5;
 
 }  // namespace
 
-LightPlaneRows perspective_rows(const ShadowScene& scene, const ReceiverHull& hull) {
-    const double near_m = double(scene.near_m), far_m = double(scene.far_m);
-    auto suits = [&](double back_m) {
-        return w_ratio(rows_of(scene, hull, back_m), hull) <= k_most_w_ratio;
-    };
-    // Slid back until infinity is so far, and until the sun sees all receivers before it: as little as that takes.
-    double least_m = std::max(k_least_infinity * (far_m - near_m) - far_m, 0.0);
-    if (suits(least_m)) return rows_of(scene, hull, least_m);
-    double enough_m = std::max(least_m, near_m);
-    for (int i = 0; i < k_rounds && !suits(enough_m); ++i) enough_m *= 2.0;
-    if (!suits(enough_m)) return uniform_rows(view_axes(scene));
-    for (int i = 0; i < k_rounds; ++i) {
-        const double middle_m = 0.5 * (least_m + enough_m);
-        (suits(middle_m) ? enough_m : least_m) = middle_m;
+ShadowView fit_shadow_perspective(const ShadowScene& scene) {
+    const CheckedShadowScene checked = check_shadow_scene(scene);
+    const std::vector<dvec3> hull = receiver_hull(checked);
+    double near_m = INFINITY, far_m = 0.0;
+    for (const dvec3& corner : hull) {
+        near_m = std::min(near_m, glm::dot(checked.forward, corner));
+        far_m = std::max(far_m, glm::dot(checked.forward, corner));
     }
-    return rows_of(scene, hull, enough_m);
+    near_m = std::max(near_m, checked.near_m);
+    const double depth_m = std::max(far_m - near_m, 1e-3 * near_m);
+    // Slid back until z_inf = z_f / (z_f - z_n) is large enough, and the field of view fitted again.
+    const double back_m = std::max(k_least_infinity * depth_m - (near_m + depth_m), 0.0);
+    const double infinity = (near_m + depth_m + back_m) / depth_m;
+    double tangent_x = 1e-9, tangent_y = 1e-9;
+    for (const dvec3& corner : hull) {
+        const double w = std::max(glm::dot(checked.forward, corner), near_m) + back_m;
+        tangent_x = std::max(tangent_x, std::fabs(glm::dot(checked.right, corner)) / w);
+        tangent_y = std::max(tangent_y, std::fabs(glm::dot(checked.up, corner)) / w);
+    }
+    const dvec3 axis_x = checked.right / tangent_x, axis_y = checked.up / tangent_y;
+    const dvec3 axis_z = checked.forward * infinity;
+    const double offset_z = -infinity * near_m;
+    dvec3 least(INFINITY), most(-INFINITY);
+    for (const dvec3& corner : hull) {
+        const double w = std::max(glm::dot(checked.forward, corner), near_m) + back_m;
+        const dvec3 moved(glm::dot(axis_x, corner) / w, glm::dot(axis_y, corner) / w,
+                          (glm::dot(axis_z, corner) + offset_z) / w);
+        least = glm::min(least, moved);
+        most = glm::max(most, moved);
+    }
+    const dvec3 sun(glm::dot(axis_x, checked.to_sun), glm::dot(axis_y, checked.to_sun),
+                    glm::dot(axis_z, checked.to_sun));
+    const double sun_w = glm::dot(checked.forward, checked.to_sun);
+    const dvec3 looking = sun_w * (least + most) * 0.5 - sun;
+    // dot(looking, D(p)) as a linear function of p, to be divided by its value in the middle.
+    const dvec3 slope = sun_w * (axis_x * looking.x + axis_y * looking.y + axis_z * looking.z) -
+                        checked.forward * glm::dot(looking, sun);
+    const double start = sun_w * offset_z * looking.z - back_m * glm::dot(looking, sun);
+    const glm::dvec2 growth = on_light_plane(checked, slope), middle = middle_of(checked, hull);
+    const double w_middle = start + glm::dot(growth, middle);
+    // Where the middle lies behind the moved sun, the direction is right and the strength any: fit_plane_map bounds it.
+    const double least_w = std::sqrt(glm::dot(growth, growth)) * 1e-6 + 1e-300;
+    const glm::dvec2 view = on_light_plane(checked, checked.forward);
+    const double share = warped_share(std::sqrt(glm::dot(view, view)), k_whole_sine);
+    return fit_plane_map(checked, hull, growth / std::max(w_middle, least_w), share);
 }
 
 }  // namespace coppice

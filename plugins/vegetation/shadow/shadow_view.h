@@ -1,37 +1,47 @@
-// Where a shadow map looks from, and how it is fitted to what is seen.
+// Where a map of the sun's shadows looks from. All coordinates are relative to the viewer, axes are the world's, m.
 //
-// The sun's rays are parallel, so every map, however it is warped, is a projective map of the plane across the sun's direction: along a
-// ray neither column nor row nor w changes, only depth. So rows x, y and w are at right angles to the sun, which leaves no case
-// in which the light is behind a projection, and depth grows towards the sun wherever z does (DESIGN 3, ERRATA 6).
+// The sun is a point at infinity, so whatever lies behind each other towards it falls on one place of the map: columns,
+// rows and w depend on the plane at right angles to the sun alone. Every map of a sun, perspective maps included, is
+// therefore a homography of that plane, and the kinds differ in one thing only: how w grows over the plane, which is
+// how much larger near things are drawn. A caster has the w of the receivers that it shadows, also when it stands
+// behind the viewer, and nothing that throws a shadow on them is ever clipped.
 #pragma once
 #include "plugins/vegetation/lod/settings.h"
 #include "runtime/core/math.h"
 
 namespace coppice {
 
-// What a map is to show. All relative to the viewer, m.
+// What a map is to show.
 struct ShadowScene {
-    vec3 right, up, forward;      // the camera's axes, unit
-    float tangent_x, tangent_y;   // of half its angles of view
-    float near_m, far_m;          // receivers lie between, along forward; 0 < near < far
-    Box receivers;                // what can be seen lies in here
-    Box casters;                  // what can throw shadows lies in here
-    vec3 to_sun;                  // unit
-    uint32_t side_texels;         // of the square map
+    vec3 right, up, forward;     // the camera's axes, unit
+    float tangent_x, tangent_y;  // of half its angles of view
+    float near_m, far_m;         // receivers lie between, along forward; 0 < near < far
+    Box receivers;               // what can be seen lies in here; cut by the frustum inside
+    Box casters;                 // what can throw shadows lies in here
+    vec3 to_sun;                 // unit
+    uint32_t side_texels;        // of the square map, at least 16
 };
 
-// Where a place p falls in the map: (column, row) = (dot(row_x, (p, 1)), dot(row_y, (p, 1))) / w, depth = dot(row_z, (p, 1)) / w,
-// w = dot(row_w, (p, 1)). Receivers have columns and rows in [k_border_texels, side - k_border_texels], depth in [0, 1), 1 nearest
-// to the sun, and w >= least_w > 0. Casters nearer to the sun than the range have depths above 1, which may be clamped: nothing seen lies
-// there. All finite, whatever the scene.
+// Place p falls on (column, row) = (dot(row_x, (p, 1)), dot(row_y, (p, 1))) / w, depth = dot(row_z, (p, 1)) / w, with
+// w = dot(row_w, (p, 1)). Columns and rows in texels, [0, side_texels]. Depth grows towards the sun along every ray, by
+// dot(row_z, (to_sun, 0)) / w a metre; in [0, 1] from the lowest receiver up to the highest caster, what lies lower has
+// less than 0: clamp it. Receivers have w >= 2 least_w and fall k_shadow_border_texels or more inside the map. What has
+// w < least_w shadows none of them and may be cut off.
 struct ShadowView {
-    vec4 row_x{0.0f}, row_y{0.0f}, row_z{0.0f}, row_w{0.0f, 0.0f, 0.0f, 1.0f};
-    float least_w = 0.5f;
+    vec4 row_x, row_y, row_z, row_w;
+    float least_w;
 };
 
-inline constexpr float k_border_texels = 2.0f;  // for the filter, and for places moved off their surfaces
+inline constexpr float k_shadow_border_texels = 2.0f;  // room for the filter
 
-// kind: not none.
-ShadowView fit_shadow(ShadowKind kind, const ShadowScene& scene);
+// Pure functions; the same bytes from every compiler. Whatever the scene holds (no receivers, far before near, what is
+// not finite), all they return is finite.
+ShadowView fit_shadow_uniform(const ShadowScene& scene);  // orthographic; w = 1
+// Stamminger and Drettakis 2002, ERRATA 6: a map of the viewer's post-perspective space.
+ShadowView fit_shadow_perspective(const ShadowScene& scene);
+// Wimmer et al. 2004, ERRATA 6: w grows along the view in the light's plane; becomes the uniform map over a band of
+// angles between light and view.
+ShadowView fit_shadow_light_space(const ShadowScene& scene);
+ShadowView fit_shadow(ShadowKind kind, const ShadowScene& scene);  // none: as uniform
 
 }  // namespace coppice

@@ -8,10 +8,6 @@
 
 namespace coppice {
 
-// error_m is at least this share of a level's spacing, level 0 excepted: vertices carry the colour too, and
-// even flat ground must not lose it to a triangle of a hundred metres.
-inline constexpr float k_color_error_share = 1.0f / 10.0f;
-
 // The samples of the field that a level shows.
 struct LevelGrid {
     uint32_t first_column, first_row;  // of its corner of least x and z

@@ -16,13 +16,16 @@ namespace coppice {
 
 struct PackedVertex;  // plugins/vegetation/plant/plant.h
 
+// Fewer vertices are wrong by at least this share of their spacing: they carry the colour too, and even flat ground must
+// not lose it to a triangle of a hundred metres.
+inline constexpr float k_color_error_share = 1.0f / 10.0f;
+
 struct TerrainLevel {
     // Into Terrain::vertices, three a triangle: the surface, then skirts, which hide what opens to a neighbour of another
     // level: of the sides of least z and of greatest z, x_skirt_vertex_count each, and of least x and of greatest x.
     uint32_t first_vertex, vertex_count;
     uint32_t x_skirt_vertex_count, z_skirt_vertex_count;
-    // Largest vertical distance to the full grid; above level 0 at least a tenth of the spacing of the level's
-    // vertices, because they carry the ground's colours too.
+    // Largest vertical distance to the full grid; above level 0 at least k_color_error_share of its vertices' spacing.
     float error_m;
 
     uint32_t surface_vertex_count() const {

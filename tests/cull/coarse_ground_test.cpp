@@ -52,8 +52,10 @@ TEST(CoarseGround, ErrorsHoldAtEverySampleAndAreReached) {
                     std::max(worst, std::fabs(height - float(origin.y) -
                                               terrain->height_at(x - float(origin.x), z - float(origin.z))));
             }
+        const float colors_m = k_color_error_share * 512.0f / float(1u << l);
         EXPECT_LE(worst, ground.levels[l].error_m * 1.01f + 0.01f);
-        EXPECT_GE(worst, ground.levels[l].error_m * 0.6f);
+        EXPECT_GE(std::max(worst, colors_m), ground.levels[l].error_m * 0.6f);
+        EXPECT_GE(ground.levels[l].error_m, colors_m);
         if (l > 0) {
             EXPECT_GT(ground.levels[l].vertex_count, ground.levels[l - 1].vertex_count);
         }
@@ -85,6 +87,18 @@ TEST(CoarseGround, IsChosenWhereItIsOffByLessThanAPixel) {
         list.list(grounds, frustum, camera.position_world, 0.0f);
         EXPECT_EQ(list.in_view()[0].coarse_level, k_in_full) << "without levels of detail";
     }
+}
+
+TEST(CoarseGround, FlatGroundKeepsItsColours) {
+    const std::vector<Ground> grounds = make_grounds(hills(R"({"flat": {"size_m": 640, "cell_m": 4}})"));
+    ASSERT_EQ(grounds.size(), 1u);
+    Camera camera;
+    camera.position_world = dvec3(0.0, 10.0, 0.0);
+    const Frustum frustum = make_frustum(camera, 800, 600);
+    GroundList list;
+    list.list(grounds, frustum, camera.position_world, 1.0f);
+    ASSERT_EQ(list.in_view().size(), 1u);
+    EXPECT_EQ(list.in_view()[0].coarse_level, k_in_full) << "as one square it has one colour";
 }
 
 TEST(CoarseGround, NothingIsMadeOfNothing) {

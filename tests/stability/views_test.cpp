@@ -56,7 +56,9 @@ TEST_F(Views, OfEveryAngleAndNearPlaneAreDrawn) {
             camera.near_m = near_m;
             const size_t covered = draw(camera, {});
             // Of a wide view's ground most lies below the viewer, nearer than a near plane of 1 m.
-            if (near_m <= 0.1f) EXPECT_GT(covered, size_t(Hills::k_width * Hills::k_height) / 3);
+            if (near_m <= 0.1f) {
+                EXPECT_GT(covered, size_t(Hills::k_width * Hills::k_height) / 3);
+            }
         }
 }
 

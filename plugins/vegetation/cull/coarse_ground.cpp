@@ -138,7 +138,9 @@ CoarseGround make_coarse_ground(const Terrain& terrain) {
         const uint32_t first = uint32_t(ground.vertices.size());
         // A neighbour may be off by as much the other way.
         write_level(grids[l], terrain.origin_world(), 2.0f * errors_m[l] + 0.1f * layout.cell_m, ground);
-        ground.levels.push_back({first, uint32_t(ground.vertices.size()) - first, errors_m[l]});
+        const float colors_m = k_color_error_share * std::max(grids[l].step_m.x, grids[l].step_m.y);
+        ground.levels.push_back(
+            {first, uint32_t(ground.vertices.size()) - first, std::max(errors_m[l], colors_m)});
     }
     return ground;
 }

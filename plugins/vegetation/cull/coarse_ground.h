@@ -10,7 +10,8 @@ namespace coppice {
 struct CoarseGround {
     struct Level {
         uint32_t first_vertex, vertex_count;  // three a triangle
-        float error_m;                        // largest vertical distance to the terrain's samples
+        // Largest vertical distance to the terrain's samples, at least k_color_error_share of its vertices' spacing.
+        float error_m;
     };
     std::vector<Level> levels;           // the coarsest first
     std::vector<PackedVertex> vertices;  // in the space of the terrain's scene

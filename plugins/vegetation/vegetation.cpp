@@ -458,7 +458,7 @@ class VegetationSystems final : public Vegetation {
         rasteriser_->set_frame(
             slot_, layout_, camera_, light_,
             {drawn_.view, resting_.shift_px, keep_ ? resting_.new_share : 0.0f, resting_.filter_radius_px},
-            {casters_.side_texels(), casters_.view()});
+            {casters_.side_texels(), casters_.view(), drawn_.shadow_distance_m});
         report_.write_ms = now_ms() - begin;
     }
 

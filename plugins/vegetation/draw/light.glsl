@@ -8,7 +8,7 @@ struct Light {
     vec4 to_sun;        // unit; w: exposure
     vec4 sun_color;     // w: haze density, 1/m
     vec4 zenith_color;
-    vec4 horizon_color;
+    vec4 horizon_color; // w: how far along the view shadows are seen, m
     vec4 ground_color;
     vec4 haze_color;
     // Of the shadow map (shadow/shadow_view.h).

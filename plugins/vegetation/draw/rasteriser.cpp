@@ -507,7 +507,7 @@ void Rasteriser::set_frame(uint32_t slot, const WorkList::Layout& layout, const 
     LightBlock block{vec4(to_sun, light.exposure),
                      vec4(light.sun_color, light.haze_density_per_m),
                      vec4(light.sky_zenith_color, 0.0f),
-                     vec4(light.sky_horizon_color, 0.0f),
+                     vec4(light.sky_horizon_color, shadow.far_m),
                      vec4(light.ground_color, 0.0f),
                      vec4(light.haze_color, 0.0f),
                      map.row_x,

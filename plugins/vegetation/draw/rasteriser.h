@@ -33,6 +33,7 @@ struct PictureSettings {
 struct ShadowSettings {
     uint32_t side_texels = 0;  // 0: none, and no pass is made
     ShadowView view{};
+    float far_m = 1000.0f;  // along the view; shadows fade before
 };
 
 class Rasteriser {

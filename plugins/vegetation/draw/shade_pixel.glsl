@@ -37,7 +37,7 @@ vec3 shade_pixel(Light sun, uint column, uint row) {
     vec3 albedo = decode_color_linear(surface);
     float openness = decode_openness(surface);
     float sunlit = stand_in_sun(openness);
-    if (k_shadows && covered) sunlit = sunlit_share(sun, direction * distance_m, normal, sunlit);
+    if (k_shadows && covered) sunlit = sunlit_share(sun, direction * distance_m, distance_m / ray_length, normal, sunlit);
     vec3 lit = shade(sun, normal, -direction, albedo, openness, sunlit, (surface & k_leaf_bit) != 0u);
     vec3 shown = covered ? apply_haze(sun, lit, direction, distance_m) : sky_radiance(sun, direction);
     if (frame.view == k_view_kinds) shown = covered ? albedo * (0.3 + 0.7 * abs(normal.y)) : shown;

@@ -10,8 +10,11 @@ const float k_normal_offset = 1.0, k_sun_offset = 0.5;
 // without a map. Measured on woodland (docs/shadows.md).
 const float k_unresolved_texel_m = 2.0;
 
-// place: relative to the viewer. unknown: the share in the mean, as without a map; outside of the map it holds.
-float sunlit_share(Light light, vec3 place, vec3 normal, float unknown) {
+// Shadows fade over the last of their distance.
+const float k_fade_from = 0.8;
+
+// place: relative to the viewer, along_m along the view. unknown: the share in the mean, as without a map; outside of the map it holds.
+float sunlit_share(Light light, vec3 place, float along_m, vec3 normal, float unknown) {
     vec4 p = vec4(place, 1.0);
     float w = dot(light.shadow_w, p), inverse_w = 1.0 / w;
     vec3 at = vec3(dot(light.shadow_x, p), dot(light.shadow_y, p), dot(light.shadow_z, p)) * inverse_w;
@@ -35,5 +38,6 @@ float sunlit_share(Light light, vec3 place, vec3 normal, float unknown) {
     vec4 nearest = uintBitsToFloat(uvec4(shadow_map[index], shadow_map[index + 1u], shadow_map[below], shadow_map[below + 1u]));
     vec4 open = mix(vec4(0.0), vec4(1.0), lessThanEqual(nearest, vec4(at.z)));
     float sunlit = mix(mix(open.x, open.y, share.x), mix(open.z, open.w, share.x), share.y);
-    return sunlit * mix(1.0, unknown, min(texel_m / k_unresolved_texel_m, 1.0));
+    sunlit *= mix(1.0, unknown, min(texel_m / k_unresolved_texel_m, 1.0));
+    return mix(sunlit, unknown, smoothstep(k_fade_from, 1.0, along_m / light.horizon_color.w));
 }

@@ -16,7 +16,7 @@ inline glm::dvec2 on_light_plane(const CheckedShadowScene& scene, dvec3 p) {
 }
 
 // w = 1 + dot(growth_per_m, place - middle) with the middle of the hull's bounds in the light's plane, by less where
-// k_most_w_ratio would be passed, and of that a share in [0, 1]; 0 is the uniform map. hull: receiver_hull's.
+// k_most_w_ratio would be passed, and of that a share in [0, 1]; 0 is the uniform map. hull: a ReceiverHull's.
 ShadowView fit_plane_map(const CheckedShadowScene& scene, std::span<const dvec3> hull,
                          glm::dvec2 growth_per_m, double share);
 

@@ -3,7 +3,6 @@
 #include "plugins/vegetation/shadow/receiver_hull.h"
 
 #include <algorithm>
-#include <array>
 
 namespace coppice {
 namespace {
@@ -15,7 +14,8 @@ struct Plane {
 using Body = std::array<Plane, 6>;
 using Corners = std::array<dvec3, 8>;  // bit 0, 1, 2 of the index: which side along the three axes
 
-void add_cut_edge(dvec3 from, dvec3 to, const Body& body, std::vector<dvec3>& ends) {
+template <class Add>
+void add_cut_edge(dvec3 from, dvec3 to, const Body& body, Add&& add) {
     double first = 0.0, last = 1.0;
     for (const Plane& plane : body) {
         const double at_from = glm::dot(plane.normal, from) + plane.offset;
@@ -25,21 +25,23 @@ void add_cut_edge(dvec3 from, dvec3 to, const Body& body, std::vector<dvec3>& en
         if (at_to < 0.0) last = std::min(last, at_from / (at_from - at_to));
     }
     if (first > last) return;
-    ends.push_back(from + (to - from) * first);
-    ends.push_back(from + (to - from) * last);
+    add(from + (to - from) * first);
+    add(from + (to - from) * last);
 }
 
-void add_cut_edges(const Corners& corners, const Body& body, std::vector<dvec3>& ends) {
+template <class Add>
+void add_cut_edges(const Corners& corners, const Body& body, Add&& add) {
     for (uint32_t corner = 0; corner < 8; ++corner)
         for (uint32_t axis = 1; axis < 8; axis <<= 1)
-            if (!(corner & axis)) add_cut_edge(corners[corner], corners[corner | axis], body, ends);
+            if (!(corner & axis)) add_cut_edge(corners[corner], corners[corner | axis], body, add);
 }
 
 }  // namespace
 
-std::vector<dvec3> receiver_hull(const CheckedShadowScene& scene) {
+ReceiverHull::ReceiverHull(const CheckedShadowScene& scene) {
+    auto add = [this](dvec3 corner) { corners_[count_++] = corner; };
     const dvec3 middle = scene.forward * scene.near_m;
-    if (scene.receivers.empty()) return {middle};
+    if (scene.receivers.empty()) return add(middle);
     const DoubleBox& box = scene.receivers;
     Corners box_corners, view_corners;
     for (uint32_t i = 0; i < 8; ++i) {
@@ -61,12 +63,9 @@ std::vector<dvec3> receiver_hull(const CheckedShadowScene& scene) {
                           {scene.forward * scene.tangent_x - scene.right, 0.0},
                           {scene.forward * scene.tangent_y + scene.up, 0.0},
                           {scene.forward * scene.tangent_y - scene.up, 0.0}}};
-    std::vector<dvec3> corners;
-    corners.reserve(48);
-    add_cut_edges(box_corners, view_body, corners);
-    add_cut_edges(view_corners, box_body, corners);
-    if (corners.empty()) corners.push_back(middle);
-    return corners;
+    add_cut_edges(box_corners, view_body, add);
+    add_cut_edges(view_corners, box_body, add);
+    if (count_ == 0) add(middle);
 }
 
 }  // namespace coppice

@@ -16,7 +16,7 @@ constexpr double k_whole_sine = 0.2;
 
 ShadowView fit_shadow_light_space(const ShadowScene& scene) {
     const CheckedShadowScene checked = check_shadow_scene(scene);
-    const std::vector<dvec3> hull = receiver_hull(checked);
+    const ReceiverHull hull(checked);
     const glm::dvec2 view = on_light_plane(checked, checked.forward);
     const double sine = std::sqrt(glm::dot(view, view));  // of the angle between light and view
     const double share = warped_share(sine, k_whole_sine);

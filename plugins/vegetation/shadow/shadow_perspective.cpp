@@ -21,7 +21,7 @@ constexpr double k_whole_sine = 0.5;
 
 ShadowView fit_shadow_perspective(const ShadowScene& scene) {
     const CheckedShadowScene checked = check_shadow_scene(scene);
-    const std::vector<dvec3> hull = receiver_hull(checked);
+    const ReceiverHull hull(checked);
     double near_m = INFINITY, far_m = 0.0;
     for (const dvec3& corner : hull) {
         near_m = std::min(near_m, glm::dot(checked.forward, corner));

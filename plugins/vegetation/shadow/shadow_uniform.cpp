@@ -6,7 +6,7 @@ namespace coppice {
 
 ShadowView fit_shadow_uniform(const ShadowScene& scene) {
     const CheckedShadowScene checked = check_shadow_scene(scene);
-    return fit_plane_map(checked, receiver_hull(checked), glm::dvec2(0.0), 0.0);
+    return fit_plane_map(checked, ReceiverHull(checked), glm::dvec2(0.0), 0.0);
 }
 
 }  // namespace coppice

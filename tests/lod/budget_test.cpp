@@ -417,7 +417,7 @@ TEST(SampleDistance, KnowsWhatLeavesDraw) {
                         const PartChoice choice =
                             choose_part(part, view, settings, std::fmod(0.618034f * float(i), 1.0f), levels);
                         drawn += (double(choice.points) - choice.skipped_points + 3.0 * choice.triangles +
-                                  4.0 * double(choice.leaf_share) * choice.leaves) / 64.0;
+                                  4.0 * choice.leaves) / 64.0;
                     }
                     // Rounding, and 0.4 % of a step of d'^2; a jump is on either side of its bin.
                     const double finer = vertices_at(histogram, d * 1.003f), coarser = vertices_at(histogram, d * 0.997f);

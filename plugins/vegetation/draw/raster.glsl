@@ -46,7 +46,7 @@ struct Entry {
     uint owner_min;  // of points that carry a density their height gain, of lines the share that is turned, of leaves the level
     bool cull_back;   // of triangles
     bool ground;
-    float mean_facing;    // of points: |cos| of normal and view in the mean; 0: all are of one size. Of leaves the share drawn
+    float mean_facing;    // of points: |cos| of normal and view in the mean; 0: all are of one size
     float density_limit;  // PartChoice::density_limit_m2; 0: points carry no density
     uint grid;            // of leaves: where the part's LeafGrid is
 };

@@ -8,13 +8,6 @@
 
 vec3 steps_of(uint xy, uint z) { return vec3(xy & 0xffffu, xy >> 16, z & 0xffffu); }
 
-// In [0, 1), of each leaf its own and the same in all bands: while leaves hand over those of the least places are drawn.
-float place_of(uvec4 corners) {
-    uint bits = (corners.x ^ corners.y * 0x9e3779b9u ^ corners.z * 0x85ebca6bu ^ corners.w * 0xc2b2ae35u) * 0x27d4eb2fu;
-    bits = (bits ^ bits >> 15) * 0x2c1b3c6du;
-    return float((bits ^ bits >> 13) >> 8) * (1.0 / 16777216.0);
-}
-
 // Of a triangle with its first corner at a, over places from there: what the other two weigh, and the depth.
 struct Half {
     vec2 to_b, to_c, slope;
@@ -54,7 +47,6 @@ void main() {
         uvec4 end = texelFetch(vertices, int(entry.first_vertex + i * 2u + 1u));
         if (end.w > entry.owner_min) continue;
         uvec4 begin = texelFetch(vertices, int(entry.first_vertex + i * 2u));
-        if (place_of(begin) >= entry.mean_facing) continue;
         vec3 corner_a = steps_of(begin.x, begin.y), corner_c = steps_of(begin.w, end.x);
         vec3 corner_b = steps_of(begin.y >> 16 | begin.z << 16, begin.z >> 16);
         vec3 corner_d = steps_of(end.x >> 16 | end.y << 16, end.y >> 16);

@@ -80,14 +80,13 @@ void WorkPart::add_ground(uint32_t first_vertex, uint32_t triangle_count, uint32
     add_triangles(first_vertex, triangle_count, instance | k_ground_bit, false);
 }
 
-void WorkPart::add_leaves(const PartGeometry& geometry, const PartChoice& choice, uint32_t instance) {
-    const uint32_t count = choice.leaves;
+void WorkPart::add_leaves(const PartGeometry& geometry, uint32_t count, uint32_t instance) {
     const LeafLevels levels = geometry.leaves;
     const LeafRun run = leaves_of_level(levels.full_count, levels.least_count, count);
-    leaves += uint32_t(choice.leaf_share * float(count) + 0.5f);
+    leaves += count;
     add_run(WorkKind::leaves,
             {geometry.first_leaf_vertex + 2 + 2 * run.first, run.count, instance, 0, 0.0f,
-             levels.full_count - count, geometry.first_leaf_vertex, choice.leaf_share},
+             levels.full_count - count, geometry.first_leaf_vertex, 0.0f},
             2);
 }
 
@@ -111,7 +110,7 @@ void WorkPart::add(const PartGeometry& geometry, const PartChoice& choice, uint3
     points += choice.points - choice.skipped_points;
     if (choice.triangles > 0)
         add_triangles(geometry.first_triangle_vertex, choice.triangles, instance, geometry.cull_back);
-    if (choice.leaves > 0) add_leaves(geometry, choice, instance);
+    if (choice.leaves > 0) add_leaves(geometry, choice.leaves, instance);
     if (choice.lines > 0)
         add_from(WorkKind::lines,
                  {geometry.first_line_vertex, 0, instance, 0,

@@ -31,7 +31,7 @@ struct WorkEntry {
     uint32_t
         cull_back;  // triangles: 1: those that turn their back are left out; points: bits of density_limit_m2;
                          // leaves: where the part's LeafGrid is
-    float mean_facing;  // PartChoice's; of leaves its leaf_share
+    float mean_facing;  // PartChoice's
 };
 static_assert(sizeof(WorkEntry) == 32);
 
@@ -96,7 +96,7 @@ class WorkPart {
   private:
     friend class WorkList;
     void add_triangles(uint32_t first_vertex, uint32_t count, uint32_t instance, bool cull_back);
-    void add_leaves(const PartGeometry& geometry, const PartChoice& choice, uint32_t instance);
+    void add_leaves(const PartGeometry& geometry, uint32_t count, uint32_t instance);
     void add_run(WorkKind kind, WorkEntry entry, uint32_t vertices_a_primitive);
     void add_from(WorkKind kind, WorkEntry entry, uint32_t vertices_a_primitive, uint32_t first,
                   uint32_t stored, uint32_t count, bool has_owners);

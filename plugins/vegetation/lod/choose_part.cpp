@@ -7,7 +7,7 @@
 namespace coppice {
 namespace {
 
-constexpr float k_leaf_blend = 1.25f;  // p at the end of a hand-over between leaves and points, over p at its beginning
+constexpr float k_latest_leaves = 1.0f / 0.75f;  // PartRule::draws_leaves
 constexpr float k_widest_line_px = 64.0f;  // raster_lines.comp
 
 float sample_distance(const FrameSettings& settings) {
@@ -63,20 +63,12 @@ PartRule::PartRule(const PackedPart& part, const FrameSettings& settings, LeafLe
     const LeafRange range = settings.foliage == FoliageMode::leaves
                                 ? whole_leaf_range(part, leaves.least_count)
                                 : automatic_leaf_range(part, leaves.full_count, leaves.least_count);
-    if (range.to <= k_leaf_blend * k_leaf_blend * range.from) return;
+    // Each plant's own beginning is within a quarter of it.
+    if (range.to <= k_latest_leaves * range.from) return;
     full_leaves_ = float(leaves.full_count);
     least_leaves_ = float(leaves.least_count);
-    leaves_from_ = whole_leaves_from_ = range.from;
-    leaves_to_ = whole_leaves_to_ = range.to;
-    leaves_count_apart_ = range.to > k_points_a_leaf * full_leaves_ || range.to > points_;
-    if (!settings.blend) return;
-    // Handed over outside of the range, as far as there are levels and points to go on with.
-    leaves_from_ = std::max(range.from / k_leaf_blend, k_points_a_leaf * least_leaves_);
-    whole_leaves_from_ = k_leaf_blend * leaves_from_;
-    // What is not p vertices gives way to triangles, at once.
-    if (leaves_count_apart_) return;
-    leaves_to_ = std::min(k_leaf_blend * range.to, points_);
-    whole_leaves_to_ = leaves_to_ / k_leaf_blend;
+    leaves_from_ = range.from;
+    leaves_to_ = range.to;
 }
 
 PartChoice PartRule::expand(const Choice& choice, float side_gain) const {
@@ -85,18 +77,9 @@ PartChoice PartRule::expand(const Choice& choice, float side_gain) const {
         case Form::triangles:
             out.triangles = triangle_count_;
             return out;
-        case Form::leaves: {
+        case Form::leaves:
             out.leaves = choice.count;
-            out.leaf_share = leaf_share(choice.asked);
-            if (out.leaf_share == 1.0f) return out;
-            // As many as leave p vertices, and as large that they cover what the leaves left out would. Those are the same
-            // but where p is more than all leaves have: there points are up to a tenth smaller.
-            const float left = choice.asked - k_points_a_leaf * out.leaf_share * float(choice.count);
-            out.points = std::min(uint32_t(std::max(left, 0.0f) + 0.5f), point_count_);
-            const float share = (1.0f - out.leaf_share) * choice.asked / std::max(left, 1.0f);
-            out.splat_px = splat_px_ * side_gain * std::sqrt(std::min(share, 1.0f));
-            break;
-        }
+            return out;
         case Form::lines:
             out.lines = std::min(choice.count, line_count_);
             out.line_width_px = line_width_px_ * (side_gain * side_gain);

@@ -14,7 +14,6 @@ struct PartChoice {
     uint32_t points = 0;
     uint32_t lines = 0;
     uint32_t leaves = 0;  // of the part's crown: its level with so many
-    float leaf_share = 1.0f;  // of these drawn, by a hash of each; the points stand for the others
     uint32_t point_owner_min = 0;  // only points whose triangle is at or past this one are drawn
     uint32_t skipped_points = 0;   // about how many of `points` that leaves out
     float splat_px = 0.0f;         // side of the square a point covers
@@ -75,7 +74,7 @@ class PartRule {
         blend,        // the first triangles and the points of the others
         lines,        // the first of them
         line_points,  // the first points that stand for lines (plant/line_points.h)
-        leaves,       // the level of the crown with so many; near both ends of their range a share of it and points
+        leaves,       // the level of the crown with so many
     };
     struct Choice {
         Form form;
@@ -101,7 +100,7 @@ class PartRule {
         const bool any = demand.area_px2 > 0.0f;
         const bool all = always_triangles_ | (any & (p >= triangles_from_));
         const bool blends = any & (p >= points_);
-        const bool as_leaves = draws_leaves(p);
+        const bool as_leaves = draws_leaves(p, chance);
         const float leaves = p * (1.0f / k_points_a_leaf) + chance;
         const float few = leaves > least_leaves_ ? leaves : least_leaves_;
         const float count = as_leaves ? (few < full_leaves_ ? few : full_leaves_)
@@ -112,18 +111,18 @@ class PartRule {
                           : Form::points,
                 round_down(all & !as_leaves ? 0.0f : count, k_most_count), p};
     }
-    // Leaves stand between points and triangles.
-    bool draws_leaves(float p) const { return (p < leaves_to_) & (p >= leaves_from_); }
-    // Of the level's leaves, where draws_leaves. The rest of p are points, so that with any share it is as many vertices.
-    float leaf_share(float p) const {
-        return p < whole_leaves_from_ ? (p - leaves_from_) / (whole_leaves_from_ - leaves_from_)
-               : p > whole_leaves_to_ ? (leaves_to_ - p) / (leaves_to_ - whole_leaves_to_)
-                                      : 1.0f;
+    // Leaves stand between points and triangles. Each plant changes to points at a p of its own within a quarter of that of
+    // all; what stands for triangles, or for more points than leaves are worth, does so for all plants at once.
+    bool draws_leaves(float p, float chance) const {
+        const float turn = chance * 256.0f - float(int32_t(chance * 256.0f));
+        return (p < leaves_to_) & (p * (0.75f + 0.5f * turn) >= leaves_from_);
     }
     // p; 0 where leaves are never drawn.
     float leaves_to() const { return leaves_to_; }
     // Whether they have other counts of vertices than what stands in their place without them.
-    bool leaves_count_apart() const { return leaves_count_apart_; }
+    bool leaves_count_apart() const {
+        return leaves_to_ > k_points_a_leaf * full_leaves_ || leaves_to_ > points_;
+    }
     float full_leaves() const { return full_leaves_; }
 
     // eps_l on the screen >= d', or q = A'_l / (l' d') > 1: all triangles. Else the first q n_l lines, or points.
@@ -193,8 +192,6 @@ class PartRule {
     float splat_px_, line_width_px_, mean_facing_ = 0.0f;
     float full_leaves_ = 0.0f, least_leaves_ = 0.0f;
     float leaves_from_ = INFINITY, leaves_to_ = 0.0f;  // p; none are drawn where there are none
-    float whole_leaves_from_ = INFINITY, whole_leaves_to_ = 0.0f;  // between these no points beside them
-    bool leaves_count_apart_ = false;
     uint32_t triangle_count_, point_count_, line_count_;
 };
 

@@ -41,7 +41,10 @@ void add_cut_edges(const Corners& corners, const Body& body, Add&& add) {
 ReceiverHull::ReceiverHull(const CheckedShadowScene& scene) {
     auto add = [this](dvec3 corner) { corners_[count_++] = corner; };
     const dvec3 middle = scene.forward * scene.near_m;
-    if (scene.receivers.empty()) return add(middle);
+    if (scene.receivers.empty()) {
+        add(middle);
+        return;
+    }
     const DoubleBox& box = scene.receivers;
     Corners box_corners, view_corners;
     for (uint32_t i = 0; i < 8; ++i) {

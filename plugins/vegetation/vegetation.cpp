@@ -143,7 +143,7 @@ class VegetationSystems final : public Vegetation {
         geometry_ = std::move(geometry);
         grounds_ = std::move(grounds);
         for (Ground& ground : grounds_) ground.coarse.vertices = {};
-        refused_entries_ = UINT32_MAX;
+        refused_entries_ = refused_side_ = UINT32_MAX;
         light_ = light;
         return {};
     }
@@ -392,14 +392,20 @@ class VegetationSystems final : public Vegetation {
 
     // After what is seen has been found, and its d'.
     void list_casters(const TileList::Tiles& tiles, const TileList::Plants& plants) {
+        const uint64_t pixel_count = uint64_t(rasteriser_->width()) * rasteriser_->height();
         casters_.list(tiles, plants, geometry_, grounds_, frustum_, camera_.position_world, light_, drawn_,
-                      uint64_t(rasteriser_->width()) * rasteriser_->height(), scene_bounds(),
+                      pixel_count, refused_side_, scene_bounds(),
                       std::min(frame_plants_.nearest_m(tile_list_), above_ground_m_));
     }
 
     void wish() {
         wishes_.assign(tile_list_.wishes().begin(), tile_list_.wishes().end());
-        wishes_.insert(wishes_.end(), casters_.wishes().begin(), casters_.wishes().end());
+        // What only throws shadows comes behind what is seen.
+        constexpr float k_caster_share = 0.25f;
+        for (TileWish wish : casters_.wishes()) {
+            wish.priority *= k_caster_share;
+            wishes_.push_back(wish);
+        }
         residency_->wish(wishes_);
     }
 
@@ -410,7 +416,8 @@ class VegetationSystems final : public Vegetation {
         list_casters(tiles, plants);
         casters_.see(geometry_);
         const size_t run_count = tile_list_.runs().size();
-        // The first part is the terrain's: should memory run out, the ground stays. The last one is the clouds'.
+        // The first part is the terrain's: should memory run out, the ground stays. The clouds' is behind the runs', and behind
+        // that the casters' are, which go first.
         work_.begin(run_count + 2 + casters_.part_count(), casters_.part_count());
         frame_plants_.draw(tile_list_, geometry_, frustum_, drawn_, resting_.index, work_, 1);
         report_.terrain_triangles = ground_expander_.expand(ground_list_.in_view(), geometry_, frustum_,
@@ -451,7 +458,8 @@ class VegetationSystems final : public Vegetation {
                 refused_entries_ = std::min(refused_entries_, size.entries);
         }
         if (auto map = rasteriser_->make_shadow_map(casters_.side_texels()); !map) {
-            if (!std::exchange(map_refused_, true)) log_warning("{}", to_string(map.error()));
+            refused_side_ = casters_.side_texels();
+            log_warning("{}", to_string(map.error()));
             casters_.drop();
         }
         layout_ = work_.gather(rasteriser_->instances(slot_), rasteriser_->entries(slot_));
@@ -553,7 +561,7 @@ class VegetationSystems final : public Vegetation {
     FramePlants frame_plants_;
     FrameCasters casters_;
     std::vector<TileWish> wishes_;
-    bool map_refused_ = false;  // there is no room for the shadow map
+    uint32_t refused_side_ = UINT32_MAX;  // there was no room for a shadow map of that side
     static constexpr float k_list_reach = 1.25f;
     float listed_px_ = 0.0f,
           spread_for_px_ = 0.0f;   // d' that the tiles were listed for, and the largest for what is hidden

@@ -219,10 +219,19 @@ TEST_F(ShadowMapTest, WithoutShadowsThereIsNoMapAndNoPass) {
     PartChoice choice;
     choice.triangles = 1;
     draw({at(10, 10, 5), at(100, 10, 5), at(10, 100, 5)}, choice);
+    const uint64_t bytes_before = rasteriser_->gpu_bytes();
     EXPECT_LE(rasteriser_->shadow_map().size_bytes(), 16u);
     look_from(vec3(0, 1, 0));
-    cast({place(-1, -1, 0), place(1, -1, 0), place(-1, 1, 0)}, choice);
+    cast({place(-9, -9, 0), place(9, -9, 0), place(-9, 9, 0)}, choice);
     EXPECT_EQ(rasteriser_->shadow_map().size_bytes(), uint64_t(k_map_side) * k_map_side * 4);
+    EXPECT_GT(rasteriser_->gpu_bytes(), bytes_before);
+    // Off again, nothing of it is left, not even the number of large triangles of the last frame that had one.
+    shadow_ = {};
+    for (int frame = 0; frame < 3; ++frame) {
+        draw({at(10, 10, 5), at(100, 10, 5), at(10, 100, 5)}, choice);
+        EXPECT_EQ(rasteriser_->dropped_triangles(), 0u);
+    }
+    EXPECT_EQ(rasteriser_->gpu_bytes(), bytes_before);
     EXPECT_FALSE(rasteriser_->make_shadow_map(20000));
 }
 

@@ -25,8 +25,10 @@ Frustum make_caster_frustum(const Frustum& view, vec3 to_sun, float far_m) {
 
     const vec3 middle = view.forward * (0.5f * far_m);
     auto add_silhouette = [&](vec3 along, vec3 through) {
-        const vec3 normal = normalize_or(glm::cross(along, to_sun), vec3(0.0f));
-        if (normal == vec3(0.0f)) return;  // the sun lies along the edge: its faces bound as well
+        // Where the sun lies along the edge the plane would be of rounding errors, and its faces bound nearly as well.
+        const vec3 across = glm::cross(along, to_sun);
+        if (glm::dot(across, across) < 1e-8f * glm::dot(along, along)) return;
+        const vec3 normal = glm::normalize(across);
         const float offset_m = -glm::dot(normal, through);
         const bool turned = glm::dot(normal, middle) + offset_m < 0.0f;
         add(turned ? -normal : normal, turned ? -offset_m : offset_m);

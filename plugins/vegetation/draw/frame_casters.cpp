@@ -21,8 +21,8 @@ FrameSettings caster_settings(const FrameSettings& settings) {
 
 // Not in steps of one texel: a window that is drawn larger would make a new map in every frame.
 uint32_t side_of(uint32_t wanted_texels, uint64_t pixel_count) {
-    constexpr uint32_t k_step = 64, k_most = 4096;
-    if (wanted_texels > 0) return wanted_texels;
+    constexpr uint32_t k_step = 64, k_most = 4096, k_least = 16, k_limit = 16384;
+    if (wanted_texels > 0) return std::clamp(wanted_texels, k_least, k_limit);
     return std::min((uint32_t(std::sqrt(double(pixel_count))) / k_step + 1) * k_step, k_most);
 }
 
@@ -37,7 +37,7 @@ float farthest_along(const Box& box, vec3 direction) {
 void FrameCasters::list(const TileList::Tiles& tiles, const TileList::Plants& plants,
                        const SceneGeometry& geometry, std::span<const Ground> grounds, const Frustum& view,
                        dvec3 camera_world, const Light& light, const FrameSettings& settings,
-                       uint64_t pixel_count, const Box& scene_bounds, float nearest_m) {
+                       uint64_t pixel_count, uint32_t refused_side_texels, const Box& scene_bounds, float nearest_m) {
     const vec3 to_sun = normalize_or(light.direction_to_sun, vec3(0.0f));
     const bool has_sun = to_sun != vec3(0.0f) && light.sun_color != vec3(0.0f);
     const float far_m = std::min(settings.shadow_distance_m, farthest_along(scene_bounds, view.forward));
@@ -45,6 +45,7 @@ void FrameCasters::list(const TileList::Tiles& tiles, const TileList::Plants& pl
     side_texels_ = settings.shadows != ShadowKind::none && is_lit && has_sun && far_m > view.near_m
                        ? side_of(settings.shadow_side_texels, pixel_count)
                        : 0;
+    if (side_texels_ >= refused_side_texels) side_texels_ = 0;
     if (!any()) return;
     to_sun_ = to_sun;
     frustum_ = make_caster_frustum(view, to_sun, far_m);
@@ -61,7 +62,11 @@ void FrameCasters::list(const TileList::Tiles& tiles, const TileList::Plants& pl
     const vec3 right = vec3(view.planes[1]), top = vec3(view.planes[3]);
     const float tangent_x = glm::dot(right, view.forward) / glm::dot(right, view.right);
     const float tangent_y = glm::dot(top, view.forward) / glm::dot(top, view.up);
-    const float near_m = std::clamp(nearest_m, view.near_m, 0.5f * (view.near_m + far_m));
+    // Along the view, what lies at a distance is nearer. What is nearer still, as single leaves around the viewer are, is lit as without a
+    // map: it would be finer there than leaves are bent.
+    const float near_m = std::isfinite(nearest_m)
+                             ? std::clamp(nearest_m * view.corner_cos, view.near_m, 0.5f * (view.near_m + far_m))
+                             : view.near_m;
     view_ = fit_shadow(settings.shadows, {view.right, view.up, view.forward, tangent_x, tangent_y, near_m, far_m,
                                           scene_bounds, scene_bounds, to_sun, side_texels_});
 }

@@ -1,5 +1,5 @@
 // What throws shadows into the picture, and the map it is drawn into: found, looked at and listed as what is seen is, with the
-// viewer's level of detail, but in the view's shift towards the sun.
+// viewer's level of detail at twice its d', in the view's shift towards the sun.
 #pragma once
 #include "plugins/vegetation/draw/expand_ground.h"
 #include "plugins/vegetation/draw/frame_plants.h"
@@ -9,11 +9,12 @@ namespace coppice {
 
 class FrameCasters {
   public:
-    // Which tiles, and the map's view. Without a sun, or with shadows off, there are none. pixel_count: of the picture; scene_bounds: all that there is, relative to the camera;
+    // Which tiles, and the map's view. Without a sun, or with shadows off, there are none, and where the map would be as large as
+    // one that found no room. pixel_count: of the picture; scene_bounds: all that there is, relative to the camera;
     // nearest_m: from the viewer to what is seen, about: the map is as fine as a pixel there.
     void list(const TileList::Tiles& tiles, const TileList::Plants& plants, const SceneGeometry& geometry,
               std::span<const Ground> grounds, const Frustum& view, dvec3 camera_world, const Light& light,
-              const FrameSettings& settings, uint64_t pixel_count, const Box& scene_bounds, float nearest_m);
+              const FrameSettings& settings, uint64_t pixel_count, uint32_t refused_side_texels, const Box& scene_bounds, float nearest_m);
     // The plants of the tiles listed last.
     void see(const SceneGeometry& geometry);
 

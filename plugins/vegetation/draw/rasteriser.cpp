@@ -92,7 +92,8 @@ void Rasteriser::read_big_counts(uint32_t slot) {
         const uint32_t count = counts[target->is_shadow];
         if (count <= target->big_limit) continue;
         dropped_triangles_ += count - target->big_limit;
-        if (auto grown = make_big_triangles(*target, count + count / 2); !grown)
+        const uint64_t wanted = std::min<uint64_t>(uint64_t(count) + count / 2, UINT32_MAX);
+        if (auto grown = make_big_triangles(*target, uint32_t(wanted)); !grown)
             log_warning("{}", to_string(grown.error()));
     }
 }
@@ -291,7 +292,10 @@ Status Rasteriser::make_shadow_map(uint32_t side_texels) {
                         std::to_string(device_.limits.storage_range_bytes) + " bytes");
     vkDeviceWaitIdle(device_.handle);
     COPPICE_TRY(gpu::Buffer map, gpu::Buffer::create(device_, device_buffer(size_bytes, "shadow map")));
-    COPPICE_CHECK(make_big_triangles(shadows_, side_texels > 0 ? k_first_big_triangles : 0));
+    COPPICE_CHECK(make_big_triangles(
+        shadows_, side_texels > 0 ? std::max(shadows_.big_limit, k_first_big_triangles) : 0));
+    // Of frames before, which no list of now was too short for.
+    for (Slot& slot : slots_) slot.big_count.mapped_as<uint32_t>()[1] = 0;
     shadows_.image = std::move(map);
     return {};
 }
@@ -414,6 +418,10 @@ void Rasteriser::add_passes() {
                                       [this](VkCommandBuffer commands) {
                                           const VkBuffer counts = slots_[slot_].big_count.handle();
                                           for (const Target* target : {&picture_, &shadows_}) {
+                                              if (target->is_shadow && !has_shadows_) {
+                                                  vkCmdFillBuffer(commands, counts, 4, 4, 0);
+                                                  continue;
+                                              }
                                               VkBufferCopy first_word{0, target->is_shadow ? 4u : 0u, 4};
                                               vkCmdCopyBuffer(commands, target->big_triangles.handle(),
                                                               counts, 1, &first_word);
@@ -557,7 +565,7 @@ uint64_t Rasteriser::gpu_bytes() const {
         total += target->image.size_bytes() + target->big_triangles.size_bytes();
     for (const Slot& slot : slots_)
         total += slot.instances.size_bytes() + slot.entries.size_bytes() + slot.light.size_bytes() +
-                 slot.uploads.size_bytes();
+                 slot.uploads.size_bytes() + slot.big_count.size_bytes();
     return total;
 }
 

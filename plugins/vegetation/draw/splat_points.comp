@@ -20,6 +20,7 @@ const float k_steepest = 1.5, k_bend = 0.5;
 void splat_shadow(Transform t, Entry entry, SunAxes axes, vec3 sun_plant, uvec4 vertex, uint owner) {
     vec3 position = uintBitsToFloat(vertex.xyz);
     vec3 p = project(t, position);
+    if (!(p.z >= frame.near_w && all(lessThan(abs(p.xy), vec2(1.0e7))))) return;  // what is no number is nowhere
     float side_m = entry.size_px * t.scale;
     if (k_blend && entry.density_limit > 0.0) {
         vec3 from_viewer = t.place + turn_direction(t, position);
@@ -33,7 +34,7 @@ void splat_shadow(Transform t, Entry entry, SunAxes axes, vec3 sun_plant, uvec4 
     vec2 side = min(side_m * map_scale(axes, p), vec2(64.0));
     vec2 low = p.xy - 0.5 * side - 0.5;
     vec2 first = max(ceil(low), vec2(0.0)), last = min(ceil(low + side), frame.size_px);
-    if (!(p.z >= frame.near_w) || any(greaterThanEqual(first, last))) return;
+    if (!(side_m > 0.0 && all(lessThan(first, last)))) return;
     float depth = depth_of(t, position, p.z);
     uint width = uint(frame.size_px.x), row = uint(first.y) * width + uint(first.x);
     uint columns = uint(last.x - first.x), end = row + width * uint(last.y - first.y);
@@ -51,7 +52,7 @@ void main() {
     float a_pixel = 1.0 / length(frame.row_x.xyz - dot(frame.row_x.xyz, frame.row_w.xyz) * frame.row_w.xyz);
     SunAxes axes = sun_axes();
     // Turned into the plant's space; t's rows are scaled.
-    vec3 sun_plant = (t.turn_x * frame.to_sun.x + t.turn_y * frame.to_sun.y + t.turn_z * frame.to_sun.z) / t.scale;
+    vec3 sun_plant = (t.turn_x * frame.to_sun.x + t.turn_y * frame.to_sun.y + t.turn_z * frame.to_sun.z) / max(t.scale, 1.0e-30);
     bool carries_density = k_blend && entry.density_limit > 0.0;
 
     for (uint i = first_item; i < entry.count; i += step) {

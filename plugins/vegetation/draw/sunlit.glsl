@@ -36,7 +36,8 @@ float sunlit_share(Light light, vec3 place, float along_m, vec3 normal, float un
     vec2 first = floor(corner), share = corner - first;
     uint index = uint(first.y) * uint(side) + uint(first.x), below = index + uint(side);
     vec4 nearest = uintBitsToFloat(uvec4(shadow_map[index], shadow_map[index + 1u], shadow_map[below], shadow_map[below + 1u]));
-    vec4 open = mix(vec4(0.0), vec4(1.0), lessThanEqual(nearest, vec4(at.z)));
+    // What lies below the map's range is not hidden by a texel that nothing covers.
+    vec4 open = mix(vec4(0.0), vec4(1.0), lessThanEqual(nearest, vec4(max(at.z, 0.0))));
     float sunlit = mix(mix(open.x, open.y, share.x), mix(open.z, open.w, share.x), share.y);
     sunlit *= mix(1.0, unknown, min(texel_m / k_unresolved_texel_m, 1.0));
     return mix(sunlit, unknown, smoothstep(k_fade_from, 1.0, along_m / light.horizon_color.w));

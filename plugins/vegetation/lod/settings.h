@@ -18,7 +18,7 @@ enum class FoliageMode : uint8_t {
     leaves,     // wherever a part has them
 };
 
-// How the shadow map is fitted to what is seen (shadow/fit_shadow.cpp).
+// How the shadow map is fitted to what is seen (shadow/shadow_view.h).
 enum class ShadowKind : uint8_t {
     none,         // no map is drawn: the sun reaches leaves as they are open to the sky
     uniform,      // as fine far from the viewer as near
@@ -38,7 +38,7 @@ struct FrameSettings {
     // Of lines alone; 0: that of points. A budget sets it where lines become triangles all at once: at the d' at which they
     // still fit, and what is left goes to points.
     float line_sample_distance_px = 0.0f;
-    // Points + 2 lines + 3 triangles + 4 leaves that the plants of a frame may draw; 0: as many as d' asks for. d' is found in each
+    // Points + 2 lines + 3 triangles + 4 leaves that the plants of a picture may draw, shadows apart; 0: as many as d' asks for. d' is found in each
     // frame so that it is met. Not of a view at rest, nor without levels of detail.
     uint64_t vertex_budget = 0;
     // Likewise, in time: as many vertices as were learned to take that long. 0: none; of both budgets the smaller holds.

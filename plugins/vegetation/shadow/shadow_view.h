@@ -24,7 +24,7 @@ struct ShadowScene {
 
 // Place p falls on (column, row) = (dot(row_x, (p, 1)), dot(row_y, (p, 1))) / w, depth = dot(row_z, (p, 1)) / w, with
 // w = dot(row_w, (p, 1)). Columns and rows in texels, [0, side_texels]. Depth grows towards the sun along every ray, by
-// dot(row_z, (to_sun, 0)) / w a metre; in [0, 1] from the lowest receiver up to the highest caster, what lies lower has
+// dot(row_z, (to_sun, 0)) / w a metre; in [0, 1/2] from the lowest receiver up to the highest caster, what lies lower has
 // less than 0: clamp it. Receivers have w >= 2 least_w and fall k_shadow_border_texels or more inside the map. What has
 // w < least_w shadows none of them and may be cut off.
 struct ShadowView {

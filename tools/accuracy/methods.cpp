@@ -136,7 +136,7 @@ std::vector<Hybrid> hybrids() {
     CookSettings leaf_lines;
     leaf_lines.lines = LineParts::slender;
     return {
-        {"hybrid, measured", "Points, lines and triangles by measured projections: the program's defaults.",
+        {"hybrid, measured", "Points, lines and triangles by measured projections: the program's defaults, without shadows.",
          unshadowed(), std::nullopt, true},
         {"hybrid, no leaves", "The defaults, but leaves are never joined: triangles and points alone.",
          no_leaves, std::nullopt, true},

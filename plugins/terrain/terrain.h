@@ -88,7 +88,7 @@ class Terrain {
 };
 
 inline constexpr const char* k_terrain_interface = "coppice.terrain";
-inline constexpr uint32_t k_terrain_version = 5;
+inline constexpr uint32_t k_terrain_version = 6;
 
 struct TerrainInterface {
     uint32_t size_bytes;

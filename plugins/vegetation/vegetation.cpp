@@ -4,10 +4,11 @@
 //   cull    list_tiles      cull/     tiles in view, nearest first, down to those whose clouds suffice, and what is missing;
 //                                     draw/ sees their plants
 //   lod     expand_plants   lod/      the budget's d'; which primitives of each plant's parts and of clouds; draw/ writes
-//                                     them down, in parallel
+//                                     them down, in parallel; and of what throws shadows (draw/frame_casters.h), into a map that
+//                                     shadow/ fits
 //   draw    write_work_list draw/     the jobs' lists, one behind the other, into the mapped buffers
 //   report  count           report/   what was drawn
-//   passes  stream in, clear, triangles, big triangles, leaves, lines, points ..., resolve: draw/rasteriser.cpp
+//   passes  stream in, where there is a sun the same into the shadow map, clear, triangles, big triangles, leaves, lines, points ..., resolve: draw/rasteriser.cpp
 #include "plugins/vegetation/vegetation.h"
 
 #include <chrono>

@@ -71,7 +71,7 @@ class Vegetation {
 };
 
 inline constexpr const char* k_vegetation_interface = "coppice.vegetation";
-inline constexpr uint32_t k_vegetation_version = 2;
+inline constexpr uint32_t k_vegetation_version = 3;
 
 struct VegetationInterface {
     uint32_t size_bytes;

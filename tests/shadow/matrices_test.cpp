@@ -3,8 +3,8 @@
 #include "tests/shadow/made_scene.h"
 
 #include <algorithm>
-#include <glm/matrix.hpp>
 #include "runtime/core/hash.h"
+#include "tools/coppice/shadow_condition.h"
 
 namespace coppice {
 namespace {
@@ -55,24 +55,6 @@ void for_each_scene(Check&& check) {
                             if (::testing::Test::HasFatalFailure()) return;
                         }
                     }
-}
-
-// The product of a matrix's and its inverse's Frobenius norms, after its rows and columns have been scaled to length
-// one in turns: units of metres, texels and depth are no matter of condition.
-double condition_of(const ShadowView& view) {
-    glm::dmat4 m(glm::dvec4(view.row_x), glm::dvec4(view.row_y), glm::dvec4(view.row_z),
-                 glm::dvec4(view.row_w));
-    for (int round = 0; round < 60; ++round) {
-        for (int i = 0; i < 4; ++i) m[i] /= std::sqrt(glm::dot(m[i], m[i]));
-        m = glm::transpose(m);
-    }
-    const glm::dmat4 inverse = glm::inverse(m);
-    double a = 0.0, b = 0.0;
-    for (int i = 0; i < 4; ++i) {
-        a += glm::dot(m[i], m[i]);
-        b += glm::dot(inverse[i], inverse[i]);
-    }
-    return std::sqrt(a * b);
 }
 
 TEST(ShadowMatrices, AreFiniteAndWellConditioned) {

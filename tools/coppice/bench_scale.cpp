@@ -143,6 +143,7 @@ PlayOptions options_of(const BenchSettings& settings, const std::string& scene) 
     options.fps = double(k_frames - 1) / 6.0;
     options.tile_memory_mib = k_tile_memory_mib;
     options.settings.vertex_budget = k_vertex_budget;
+    options.settings.shadows = ShadowKind::none;  // a budget is of the picture's primitives
     return options;
 }
 

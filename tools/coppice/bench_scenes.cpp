@@ -15,8 +15,11 @@ namespace {
 
 constexpr uint32_t k_flight_frames = 60;  // spread over the whole path
 
-// Flies a scene of content/scenes from its start to its end in k_flight_frames frames.
-Result<PlayRecord> fly_scene(const BenchSettings& settings, const std::string& scene, PlayOptions options) {
+// Flies a scene of content/scenes from its start to its end in k_flight_frames frames. Without shadows, unless they are what is
+// measured: the other figures are of levels of detail.
+Result<PlayRecord> fly_scene(const BenchSettings& settings, const std::string& scene, PlayOptions options,
+                             ShadowKind shadows = ShadowKind::none) {
+    options.settings.shadows = shadows;
     options.scene = fmt::format("{}/scenes/{}.eco.json", settings.content, scene);
     options.headless = true;
     options.device = settings.device;
@@ -121,6 +124,9 @@ Result<nlohmann::json> bench_table(const BenchSettings& settings) {
         add("lines", "per frame");
         add("points", "per frame");
         add("device_memory_mib", "MiB");
+        COPPICE_TRY(const PlayRecord shadowed, fly_scene(settings, scene, options, FrameSettings{}.shadows));
+        figures.push_back({fmt::format("{} median_hz with shadows", scene),
+                           figure_value(play_figures(shadowed), "median_hz"), "Hz", 20.0});
     }
     return to_json("scenes", last, figures);
 }

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <string>
-#include <glm/matrix.hpp>
 #include "plugins/vegetation/shadow/shadow_view.h"
 #include "runtime/core/random.h"
 #include "tools/coppice/figure.h"
+#include "tools/coppice/shadow_condition.h"
 
 namespace coppice {
 namespace {
@@ -40,23 +40,6 @@ ShadowScene make_scene(double angle_deg, float near_m, float far_m, double first
     scene.to_sun = vec3(forward * std::cos(angle_deg * k_degree) + up * std::sin(angle_deg * k_degree));
     scene.side_texels = 1024;
     return scene;
-}
-
-// Frobenius, rows and columns scaled to length one in turns.
-double condition_of(const ShadowView& view) {
-    glm::dmat4 m(glm::dvec4(view.row_x), glm::dvec4(view.row_y), glm::dvec4(view.row_z),
-                 glm::dvec4(view.row_w));
-    for (int round = 0; round < 60; ++round) {
-        for (int i = 0; i < 4; ++i) m[i] /= std::sqrt(glm::dot(m[i], m[i]));
-        m = glm::transpose(m);
-    }
-    const glm::dmat4 inverse = glm::inverse(m);
-    double squares = 0.0, inverse_squares = 0.0;
-    for (int i = 0; i < 4; ++i) {
-        squares += glm::dot(m[i], m[i]);
-        inverse_squares += glm::dot(inverse[i], inverse[i]);
-    }
-    return std::sqrt(squares * inverse_squares);
 }
 
 void check_receiver(const ShadowScene& scene, const ShadowView& view, vec3 p, Worst& worst) {

@@ -129,7 +129,8 @@ float JsonObject::real(const char* key, float low, float high, std::optional<flo
 
 uint64_t JsonObject::whole(const char* key, uint64_t low, uint64_t high, std::optional<uint64_t> otherwise) {
     const nlohmann::json* value = find(key);
-    if (value && value->is_number_unsigned()) {
+    // What a program put together is signed where it comes from signed numbers.
+    if (value && (value->is_number_unsigned() || (value->is_number_integer() && value->get<int64_t>() >= 0))) {
         uint64_t number = value->get<uint64_t>();
         if (number >= low && number <= high) return number;
     }

@@ -67,11 +67,16 @@ struct Camera {
     float pitch_rad = 0.0f;  // positive looks up
     float vertical_fov_rad = 1.0471976f;
     float near_m = 0.1f;
+    float roll_rad = 0.0f;  // positive tips the head to the left: the picture turns clockwise
     vec3 forward() const;
     vec3 right() const;
     vec3 up() const;
     bool operator==(const Camera&) const = default;
 };
+
+// The camera that looks along `forward` with `up` upwards, for hosts that have axes or a matrix: the rows of a view matrix
+// are right, up and -forward. Both need not be unit, nor at right angles; what is zero or no number is taken as -z and y.
+Camera camera_along(dvec3 position_world, vec3 forward, vec3 up, float vertical_fov_rad, float near_m);
 
 // Sun, sky and haze. Radiances are linear, 1 is white on the screen after exposure.
 struct Light {

@@ -11,8 +11,11 @@
 //   passes  stream in, where there is a sun the same into the shadow map, clear, triangles, big triangles, leaves, lines, points ..., resolve: draw/rasteriser.cpp
 #include "plugins/vegetation/vegetation.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <map>
+#include <optional>
 #include <utility>
 #include "plugins/vegetation/cull/list_grounds.h"
 #include "plugins/vegetation/cull/list_tiles.h"
@@ -24,7 +27,6 @@
 #include "plugins/vegetation/lod/learn_cost.h"
 #include "plugins/vegetation/lod/rest.h"
 #include "runtime/core/log.h"
-#include "runtime/plugin/plugin.h"
 
 namespace coppice {
 namespace {
@@ -89,20 +91,81 @@ class VegetationSystems final : public Vegetation {
         return {};
     }
 
+    Status set_loose_tile(uint64_t name, const LooseTile& loose) override {
+        const size_t count = loose.positions.size();
+        auto wrong = [name](ErrorId id, std::string fault, std::string remedy) {
+            return fail(id, "", "loose tile " + std::to_string(name), std::move(fault), std::move(remedy));
+        };
+        if (loose.turns.size() != count || loose.models.size() != count)
+            return wrong(ErrorId::value_out_of_range, "arrays of different length",
+                         "one position, turn and model a plant");
+        for (const PlantModel& model : loose.models)
+            if (model.model >= geometry_.models.size())
+                return wrong(ErrorId::value_out_of_range, "model " + std::to_string(model.model),
+                             "the scene has " + std::to_string(geometry_.models.size()) + " models");
+        auto found = loose_rows_.find(name);
+        if (found == loose_rows_.end()) {
+            if (count == 0) return {};
+            if (free_loose_rows_.empty())
+                return wrong(ErrorId::limit_exceeded, "no room for another",
+                             "VegetationSettings::loose_tiles says how many there may be");
+            found = loose_rows_.emplace(name, LooseRow{free_loose_rows_.back(), {}}).first;
+            free_loose_rows_.pop_back();
+        }
+        LooseRow& row = found->second;
+        World& world = *settings_.world;
+        ChunkId chunk{};
+        if (count > 0) {
+            auto [made, positions, turns, models] = world.create_chunk<PlantPosition, PlantTurn, PlantModel>(
+                uint32_t(count), world.chunk(chunks_.front()).entity(row.row));
+            if (!made)
+                return wrong(ErrorId::limit_exceeded, "no room for its plants", "fewer plants a tile");
+            std::copy(loose.positions.begin(), loose.positions.end(), positions.begin());
+            std::copy(loose.turns.begin(), loose.turns.end(), turns.begin());
+            std::copy(loose.models.begin(), loose.models.end(), models.begin());
+            chunk = made;
+        }
+        if (row.chunk) world.destroy_chunk(row.chunk);
+        row.chunk = chunk;
+        set_loose_row(row.row, loose);
+        if (count == 0) {
+            free_loose_rows_.push_back(row.row);
+            loose_rows_.erase(found);
+        }
+        casters_.note_changes();
+        moved_ = true;
+        return {};
+    }
+
     Status resize(uint32_t width, uint32_t height) override {
         moved_ = true;
+        host_picture_.reset();
         return rasteriser_->resize(width, height);
+    }
+    Status set_host_picture(const HostPicture& picture) override {
+        const bool same = host_picture_ && *host_picture_ == picture;
+        if (same) return {};
+        host_picture_.reset();
+        moved_ = true;
+        if (!picture.color) return {};
+        COPPICE_CHECK(rasteriser_->make_host_picture(picture));
+        host_picture_ = picture;
+        return {};
     }
     void set_camera(const Camera& camera) override {
         const dvec3& p = camera.position_world;
         // A host's camera that is not a number must not reach a sort or a pixel: the one before stays.
         if (std::isfinite(p.x + p.y + p.z) && std::isfinite(camera.yaw_rad + camera.pitch_rad) &&
-            camera.vertical_fov_rad > 0.0f && camera.near_m > 0.0f && std::isfinite(camera.near_m))
+            std::isfinite(camera.roll_rad) && camera.vertical_fov_rad > 0.0f && camera.near_m > 0.0f &&
+            std::isfinite(camera.near_m))
             camera_ = camera;
     }
     void set_light(const Light& light) override { light_ = light; }
     void set_settings(const FrameSettings& settings) override { frame_ = settings; }
-    void set_slot(uint32_t slot) override { slot_ = slot; }
+    void set_slot(uint32_t slot) override {
+        slot_ = slot;
+        rasteriser_->begin_slot(slot);
+    }
     void set_frame_ms(uint32_t slot, double ms) override {
         if (slot < slot_counts_.size() && std::exchange(slot_counts_[slot].drawn, false))
             cost_.learn(slot_counts_[slot].counts, ms);
@@ -172,25 +235,30 @@ class VegetationSystems final : public Vegetation {
         return {};
     }
 
-    // All tiles in one chunk; each leaf owns the chunk of its plants.
+    // All tiles in one chunk; each leaf owns the chunk of its plants. Where there may be loose tiles, row 0 holds the place
+    // where the scene stands, and them; the scene's rows follow.
     Status add_tiles(const Scene& scene, std::span<const TileNode> tree) {
-        if (tree.empty()) return {};
+        const uint32_t loose_count = std::min(settings_.loose_tiles, k_loose_tile_limit);
+        const uint32_t first_row = loose_count > 0 ? 2 + loose_count : 0;
+        if (tree.empty() && first_row == 0) return {};
         auto [tile_chunk, tiles, levels] =
-            settings_.world->create_chunk<Tile, TileLevels>(uint32_t(tree.size()));
+            settings_.world->create_chunk<Tile, TileLevels>(first_row + uint32_t(tree.size()));
         if (!tile_chunk) return no_room(scene.path);
         chunks_.push_back(tile_chunk);
-        for (size_t row = tree.size(); row-- > 0;) {  // children before their parents
-            const TileNode& node = tree[row];
+        for (size_t n = tree.size(); n-- > 0;) {  // children before their parents
+            const TileNode& node = tree[n];
+            const size_t row = first_row + n;
             tiles[row] = {node.origin_world, node.bounds_tile, node.plant_count};
-            levels[row] = {uint32_t(row),
-                           node.first_child,
+            levels[row] = {uint32_t(n),
+                           first_row + node.first_child,
                            node.child_count,
                            TileLevels::k_none,
                            node.cloud.finest_density(),
                            0,
                            0};
             for (uint32_t child = 0; child < node.child_count; ++child)
-                levels[row].triangle_count += levels[node.first_child + child].triangle_count;
+                levels[row].triangle_count +=
+                    levels[first_row + node.first_child + child].triangle_count;
             if (node.child_count > 0) continue;
             const SceneTile& source = scene.tiles[node.tile];
             auto [chunk, positions, turns, models] =
@@ -206,12 +274,66 @@ class VegetationSystems final : public Vegetation {
                 levels[row].triangle_count += geometry_.models[models[i].model].triangle_count;
             }
         }
+        if (loose_count > 0) {
+            tiles[1] = k_empty_tile;
+            levels[1] = {};
+            if (!tree.empty()) levels[1].target = first_row;
+            for (uint32_t row = 1 + loose_count; row >= 2; --row) {
+                tiles[row] = k_empty_tile;
+                levels[row] = {};
+                free_loose_rows_.push_back(row);  // the lowest goes first
+            }
+            set_outer_row(tiles, levels);
+        }
         scene_triangles_ = levels[0].triangle_count;
         return {};
     }
 
+    void set_loose_row(uint32_t row, const LooseTile& loose) {
+        World& world = *settings_.world;
+        const std::span<Tile> tiles = world.column<Tile>(chunks_.front());
+        const std::span<TileLevels> levels = world.column<TileLevels>(chunks_.front());
+        tiles[row] = loose.positions.empty() ? k_empty_tile : loose.tile;
+        tiles[row].plant_count = loose.positions.size();
+        levels[row].triangle_count = 0;
+        for (const PlantModel& model : loose.models)
+            levels[row].triangle_count += geometry_.models[model.model].triangle_count;
+        set_outer_row(tiles, levels);
+        scene_triangles_ = levels[0].triangle_count;
+    }
+
+    // What row 0 holds: the scene and all loose tiles, those in use in front.
+    void set_outer_row(std::span<Tile> tiles, std::span<TileLevels> levels) {
+        uint32_t row_end = 2;
+        for (const auto& [name, loose] : loose_rows_) row_end = std::max(row_end, loose.row + 1);
+        Tile& outer = tiles[0];
+        const uint32_t scene_row = levels[1].target;
+        const bool has_scene = scene_row != TileLevels::k_none;
+        outer = k_empty_tile;
+        levels[0] = {};
+        if (has_scene) {
+            outer = tiles[scene_row];
+            levels[0].triangle_count = levels[scene_row].triangle_count;
+        }
+        for (uint32_t row = 2; row < row_end; ++row) {
+            const Tile& tile = tiles[row];
+            if (tile.plant_count == 0) continue;
+            if (outer.plant_count == 0) outer = {tile.origin_world, {}, 0};
+            const vec3 from_outer = vec3(tile.origin_world - outer.origin_world);
+            outer.bounds_tile.include(
+                Box{tile.bounds_tile.min + from_outer, tile.bounds_tile.max + from_outer});
+            outer.plant_count += tile.plant_count;
+            levels[0].triangle_count += levels[row].triangle_count;
+        }
+        levels[0].first_child = 1;
+        levels[0].child_count = outer.plant_count > 0 ? row_end - 1 : 0;
+    }
+
     void drop_scene() {
         if (residency_) residency_->drop_plants(*settings_.world);
+        for (const auto& [name, row] : loose_rows_) settings_.world->destroy_chunk(row.chunk);
+        loose_rows_.clear();
+        free_loose_rows_.clear();
         for (const ChunkId& chunk : chunks_) settings_.world->destroy_chunk(chunk);
         chunks_.clear();
         residency_.reset();
@@ -219,6 +341,7 @@ class VegetationSystems final : public Vegetation {
         grounds_.clear();
         report_ = {};
         scene_triangles_ = 0;
+        casters_.forget();
         moved_ = true;
     }
 
@@ -230,7 +353,7 @@ class VegetationSystems final : public Vegetation {
         last_light_ = light_;
         last_frame_ = frame_;
         rested_ = rests && keep_ ? std::min(rested_ + 1, frame_.accumulate_limit) : 0;
-        keep_ = frame_.accumulate_limit > 0;
+        keep_ = frame_.accumulate_limit > 0 && !host_picture_;
         if (keep_)
             if (auto room = rasteriser_->keep_radiance(); !room) {
                 if (!std::exchange(keep_refused_, true)) log_warning("{}", to_string(room.error()));
@@ -282,9 +405,9 @@ class VegetationSystems final : public Vegetation {
         predict_motion();
         frustum_ = make_frustum(camera_, rasteriser_->width(), rasteriser_->height());
         see_grounds();
-        const bool waits = residency_ && frame_.wait_for_tiles;
+        const bool waits = residency_ && frame_.wait_for_tiles && settings_.device->submits();
         if (residency_ && residency_->update(world, chunks_.front(), geometry_, *rasteriser_, slot_, waits))
-            tiles_changed_ = !waits;  // frames that waited lack nothing
+            note_arrivals(!waits);  // frames that waited lack nothing
         begin_frame();
         if (waits && !settled_) wait_for_tiles(world);
         report_.stream_ms = now_ms() - begin;
@@ -394,20 +517,21 @@ class VegetationSystems final : public Vegetation {
     // After what is seen has been found, and its d'.
     void list_casters(const TileList::Tiles& tiles, const TileList::Plants& plants) {
         const uint64_t pixel_count = uint64_t(rasteriser_->width()) * rasteriser_->height();
-        casters_.list(tiles, plants, geometry_, grounds_, frustum_, camera_.position_world, light_, drawn_,
-                      pixel_count, refused_side_, scene_bounds(),
-                      std::min(frame_plants_.nearest_m(tile_list_), above_ground_m_));
+        casters_.list(tiles, plants, geometry_, grounds_,
+                      {frustum_, camera_.position_world, tile_list_.origin_world(), motion_m_, pixel_count, scene_bounds(),
+                       std::min(frame_plants_.nearest_m(tile_list_), above_ground_m_), refused_side_},
+                      light_, drawn_);
     }
 
     void wish() {
         wishes_.assign(tile_list_.wishes().begin(), tile_list_.wishes().end());
-        // What only throws shadows comes behind what is seen.
-        constexpr float k_caster_share = 0.25f;
-        for (TileWish wish : casters_.wishes()) {
-            wish.priority *= k_caster_share;
-            wishes_.push_back(wish);
-        }
+        casters_.add_wishes(wishes_);
         residency_->wish(wishes_);
+    }
+
+    void note_arrivals(bool changed) {
+        tiles_changed_ = changed;
+        casters_.note_arrivals();
     }
 
     void expand(const TileList::Tiles& tiles, const TileList::Plants& plants) {
@@ -419,11 +543,11 @@ class VegetationSystems final : public Vegetation {
         const size_t run_count = tile_list_.runs().size();
         // The first part is the terrain's: should memory run out, the ground stays. The clouds' is behind the runs', and behind
         // that the casters' are, which go first.
-        work_.begin(run_count + 2 + casters_.part_count(), casters_.part_count());
+        work_.begin(run_count + 2, casters_.part_counts());
         frame_plants_.draw(tile_list_, geometry_, frustum_, drawn_, resting_.index, work_, 1);
         report_.terrain_triangles = ground_expander_.expand(ground_list_.in_view(), geometry_, frustum_,
                                                             ground_error_px(drawn_), work_.part(0));
-        casters_.draw(geometry_, drawn_, resting_.index, work_, run_count + 2);
+        casters_.draw(geometry_, resting_.index, work_, run_count + 2);
         if (residency_) wish();
         report_.lod_ms = now_ms() - begin;
     }
@@ -458,16 +582,21 @@ class VegetationSystems final : public Vegetation {
                 size.entries > rasteriser_->entries(slot_).size())
                 refused_entries_ = std::min(refused_entries_, size.entries);
         }
-        if (auto map = rasteriser_->make_shadow_map(casters_.side_texels()); !map) {
+        if (auto maps = rasteriser_->make_shadow_maps(casters_.side_texels(),
+                                                      casters_.any() ? casters_.map_count() : 0);
+            !maps) {
             refused_side_ = casters_.side_texels();
-            log_warning("{}", to_string(map.error()));
+            log_warning("{}", to_string(maps.error()));
             casters_.drop();
         }
         layout_ = work_.gather(rasteriser_->instances(slot_), rasteriser_->entries(slot_));
         rasteriser_->set_frame(
             slot_, layout_, camera_, light_,
-            {drawn_.view, resting_.shift_px, keep_ ? resting_.new_share : 0.0f, resting_.filter_radius_px},
-            {casters_.side_texels(), casters_.view(), drawn_.shadow_distance_m});
+            {drawn_.view, resting_.shift_px, keep_ ? resting_.new_share : 0.0f, resting_.filter_radius_px,
+             host_picture_ ? &*host_picture_ : nullptr},
+            casters_.maps());
+        casters_.commit(layout_.dropped_entries == 0);
+        if (rasteriser_->dropped_shadows()) casters_.forget();
         report_.write_ms = now_ms() - begin;
     }
 
@@ -495,17 +624,15 @@ class VegetationSystems final : public Vegetation {
         report_.lines = seen.lines;
         report_.points = seen.points;
         report_.leaves = seen.leaves;
-        const PrimitiveCounts casters =
-            casters_.any() ? work_.count(part_count + 1, part_count + casters_.part_count())
-                           : PrimitiveCounts{};
+        const PrimitiveCounts casters = work_.count(part_count, work_.part_count());
+        report_.shadow_maps = casters_.drawn_map_count();
         report_.shadow_side_texels = casters_.side_texels();
         report_.shadow_plants = casters_.plant_count();
         report_.shadow_triangles = casters.triangles;
         report_.shadow_lines = casters.lines;
         report_.shadow_points = casters.points;
         report_.shadow_leaves = casters.leaves;
-        report_.vertices =
-            report_.points + 2 * report_.lines + 3 * report_.triangles + 4 * report_.leaves;
+        report_.vertices = report_.points + 2 * report_.lines + 3 * report_.triangles + 4 * report_.leaves;
         slot_counts_[slot_] = {counts_of(report_), true};
         report_.sample_distance_px = drawn_.sample_distance_px;
         report_.vertex_budget = budget_;
@@ -528,9 +655,17 @@ class VegetationSystems final : public Vegetation {
     SceneGeometry geometry_;
     std::vector<Ground> grounds_;
     std::vector<ChunkId> chunks_;  // of the tiles, and of each leaf's plants that is not streamed
+    static constexpr Tile k_empty_tile{dvec3(0.0), {vec3(0.0f), vec3(0.0f)}, 0};
+    struct LooseRow {
+        uint32_t row;
+        ChunkId chunk;
+    };
+    std::map<uint64_t, LooseRow> loose_rows_;  // by the host's names
+    std::vector<uint32_t> free_loose_rows_;    // taken from the back
     std::unique_ptr<TileResidency> residency_;
     uint64_t scene_triangles_ = 0;
 
+    std::optional<HostPicture> host_picture_;
     Camera camera_;
     Light light_;
     FrameSettings frame_;
@@ -580,23 +715,12 @@ class VegetationSystems final : public Vegetation {
     FrameReport report_;
 };
 
-Result<std::unique_ptr<Vegetation>> create(const VegetationSettings& settings) {
+}  // namespace
+
+Result<std::unique_ptr<Vegetation>> create_vegetation(const VegetationSettings& settings) {
     auto systems = std::make_unique<VegetationSystems>(settings);
     COPPICE_CHECK(systems->start());
     return std::unique_ptr<Vegetation>(std::move(systems));
 }
 
-constexpr VegetationInterface k_interface{sizeof(VegetationInterface), &create};
-
-int load(const CoppiceHost* host) {
-    return host->provide(host->context, k_vegetation_interface, k_vegetation_version, &k_interface);
-}
-void unload() {}
-
-constexpr CoppicePlugin k_plugin{
-    sizeof(CoppicePlugin), COPPICE_PLUGIN_ABI, "vegetation", "0.1.0", &load, &unload};
-
-}  // namespace
 }  // namespace coppice
-
-extern "C" COPPICE_PLUGIN_EXPORT const CoppicePlugin* coppice_plugin(void) { return &coppice::k_plugin; }

@@ -4,8 +4,6 @@
 #pragma once
 #include <cmath>
 #include <cstdint>
-#define GLM_FORCE_XYZW_ONLY
-#define GLM_FORCE_DEPTH_ZERO_TO_ONE
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>

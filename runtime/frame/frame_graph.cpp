@@ -6,6 +6,7 @@
 
 #include <cassert>
 #include <fmt/format.h>
+#include "runtime/gpu/vulkan.h"
 
 namespace coppice {
 namespace {

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <utility>
 #include <fmt/format.h>
+#include "runtime/gpu/vulkan.h"
 
 namespace coppice::gpu {
 namespace {
@@ -87,6 +88,9 @@ Status check_size(const Device& device, const BufferSettings& settings, VkDevice
 // Records one-off commands, submits and waits.
 template <class Record>
 Status run_now(const Device& device, Record record) {
+    if (!device.submits())
+        return fail(ErrorId::usage, "", "vkQueueSubmit", "the host keeps its queue",
+                    "record a frame, or hand in a queue");
     VkCommandPool pool = VK_NULL_HANDLE;
     VkFence fence = VK_NULL_HANDLE;
     VkCommandBuffer commands = VK_NULL_HANDLE;
@@ -94,11 +98,11 @@ Status run_now(const Device& device, Record record) {
     VkCommandPoolCreateInfo pool_info{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
     pool_info.flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT;
     pool_info.queueFamilyIndex = device.queue_family;
-    VkResult result = vkCreateCommandPool(device.handle, &pool_info, nullptr, &pool);
+    VkResult result = vkCreateCommandPool(device.handle, &pool_info, device.allocator, &pool);
     if (result == VK_SUCCESS) {
         call = "vkCreateFence";
         VkFenceCreateInfo fence_info{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
-        result = vkCreateFence(device.handle, &fence_info, nullptr, &fence);
+        result = vkCreateFence(device.handle, &fence_info, device.allocator, &fence);
     }
     if (result == VK_SUCCESS) {
         call = "vkAllocateCommandBuffers";
@@ -141,13 +145,56 @@ Status run_now(const Device& device, Record record) {
         call = "vkWaitForFences";
         result = vkWaitForFences(device.handle, 1, &fence, VK_TRUE, UINT64_MAX);
     }
-    vkDestroyFence(device.handle, fence, nullptr);
-    vkDestroyCommandPool(device.handle, pool, nullptr);
+    vkDestroyFence(device.handle, fence, device.allocator);
+    vkDestroyCommandPool(device.handle, pool, device.allocator);
     if (result != VK_SUCCESS) return fail(vulkan_error(result, call));
     return {};
 }
 
 }  // namespace
+
+// From the device, or from the host's own allocator.
+Status Buffer::allocate(const BufferSettings& settings) {
+    VkMemoryRequirements needs{};
+    vkGetBufferMemoryRequirements(device_->handle, buffer_, &needs);
+    const MemoryKind kind = kind_of(settings.memory);
+    VkResult result = VK_ERROR_OUT_OF_DEVICE_MEMORY;
+    const MemorySource& source = device_->memory_source;
+    if (source.allocate) {
+        MemoryRange range;
+        result = source.allocate(source.context, needs, kind.required, kind.preferred, range);
+        if (result == VK_SUCCESS) memory_ = range;
+    } else {
+        // The preferred kind of memory may be full (the mappable part of a GPU's is often small): then the next.
+        VkMemoryAllocateInfo allocate{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO};
+        allocate.allocationSize = needs.size;
+        uint32_t types = needs.memoryTypeBits;
+        while (result == VK_ERROR_OUT_OF_DEVICE_MEMORY) {
+            allocate.memoryTypeIndex = device_->find_memory_type(types, kind.required, kind.preferred);
+            if (allocate.memoryTypeIndex == UINT32_MAX) break;
+            result = vkAllocateMemory(device_->handle, &allocate, device_->allocator, &memory_.memory);
+            types &= ~(1u << allocate.memoryTypeIndex);
+        }
+    }
+    if (result == VK_ERROR_DEVICE_LOST) return fail(vulkan_error(result, "vkAllocateMemory"));
+    if (result != VK_SUCCESS)
+        return fail(ErrorId::limit_exceeded, "", fmt::format("buffer \"{}\"", settings.name),
+                    fmt::format("{} has no {} bytes of memory left", device_->name, size_bytes_),
+                    "draw a smaller scene, lower the memory budget, or close other programs");
+    result = vkBindBufferMemory(device_->handle, buffer_, memory_.memory, memory_.offset_bytes);
+    if (result != VK_SUCCESS) return fail(vulkan_error(result, "vkBindBufferMemory"));
+    if (settings.memory == MemoryUse::device) return {};
+    if (!source.allocate) {
+        result = vkMapMemory(device_->handle, memory_.memory, 0, VK_WHOLE_SIZE, 0, &memory_.mapped);
+        if (result != VK_SUCCESS) return fail(vulkan_error(result, "vkMapMemory"));
+    }
+    if (!memory_.mapped)
+        return fail(ErrorId::limit_exceeded, "", fmt::format("buffer \"{}\"", settings.name),
+                    "the host's allocator did not map it",
+                    "map all memory that is required to be HOST_VISIBLE");
+    mapped_ = static_cast<std::byte*>(memory_.mapped);
+    return {};
+}
 
 Result<Buffer> Buffer::create(const Device& device, const BufferSettings& settings) {
     Buffer buffer;
@@ -159,45 +206,18 @@ Result<Buffer> Buffer::create(const Device& device, const BufferSettings& settin
     info.size = buffer.size_bytes_;
     info.usage = settings.usage;
     if (settings.texel_format != VK_FORMAT_UNDEFINED) info.usage |= VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT;
-    VkResult result = vkCreateBuffer(device.handle, &info, nullptr, &buffer.buffer_);
+    VkResult result = vkCreateBuffer(device.handle, &info, device.allocator, &buffer.buffer_);
     if (result != VK_SUCCESS) return fail(vulkan_error(result, "vkCreateBuffer"));
     device.set_name(VK_OBJECT_TYPE_BUFFER, uint64_t(buffer.buffer_), settings.name);
 
-    // The preferred kind of memory may be full (the mappable part of a GPU's is often small): then the next.
-    VkMemoryRequirements needs{};
-    vkGetBufferMemoryRequirements(device.handle, buffer.buffer_, &needs);
-    MemoryKind kind = kind_of(settings.memory);
-    VkMemoryAllocateInfo allocate{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO};
-    allocate.allocationSize = needs.size;
-    result = VK_ERROR_OUT_OF_DEVICE_MEMORY;
-    uint32_t types = needs.memoryTypeBits;
-    while (result == VK_ERROR_OUT_OF_DEVICE_MEMORY) {
-        allocate.memoryTypeIndex = device.find_memory_type(types, kind.required, kind.preferred);
-        if (allocate.memoryTypeIndex == UINT32_MAX) break;
-        result = vkAllocateMemory(device.handle, &allocate, nullptr, &buffer.memory_);
-        types &= ~(1u << allocate.memoryTypeIndex);
-    }
-    if (result == VK_ERROR_DEVICE_LOST) return fail(vulkan_error(result, "vkAllocateMemory"));
-    if (result != VK_SUCCESS)
-        return fail(ErrorId::limit_exceeded, "", fmt::format("buffer \"{}\"", settings.name),
-                    fmt::format("{} has no {} bytes of memory left", device.name, buffer.size_bytes_),
-                    "draw a smaller scene, lower the memory budget, or close other programs");
-    result = vkBindBufferMemory(device.handle, buffer.buffer_, buffer.memory_, 0);
-    if (result != VK_SUCCESS) return fail(vulkan_error(result, "vkBindBufferMemory"));
-
-    if (settings.memory != MemoryUse::device) {
-        void* mapped = nullptr;
-        result = vkMapMemory(device.handle, buffer.memory_, 0, VK_WHOLE_SIZE, 0, &mapped);
-        if (result != VK_SUCCESS) return fail(vulkan_error(result, "vkMapMemory"));
-        buffer.mapped_ = static_cast<std::byte*>(mapped);
-    }
+    COPPICE_CHECK(buffer.allocate(settings));
     if (settings.texel_format != VK_FORMAT_UNDEFINED) {
         VkBufferViewCreateInfo view{VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO};
         view.buffer = buffer.buffer_;
         view.format = settings.texel_format;
         view.range =
             buffer.size_bytes_ / texel_bytes(settings.texel_format) * texel_bytes(settings.texel_format);
-        result = vkCreateBufferView(device.handle, &view, nullptr, &buffer.view_);
+        result = vkCreateBufferView(device.handle, &view, device.allocator, &buffer.view_);
         if (result != VK_SUCCESS) return fail(vulkan_error(result, "vkCreateBufferView"));
     }
     return buffer;
@@ -217,9 +237,13 @@ Buffer& Buffer::operator=(Buffer&& other) noexcept {
 
 Buffer::~Buffer() {
     if (!device_) return;
-    vkDestroyBufferView(device_->handle, view_, nullptr);
-    vkDestroyBuffer(device_->handle, buffer_, nullptr);
-    vkFreeMemory(device_->handle, memory_, nullptr);  // also unmaps
+    vkDestroyBufferView(device_->handle, view_, device_->allocator);
+    vkDestroyBuffer(device_->handle, buffer_, device_->allocator);
+    const MemorySource& source = device_->memory_source;
+    if (!source.allocate)
+        vkFreeMemory(device_->handle, memory_.memory, device_->allocator);  // also unmaps
+    else if (memory_.memory)
+        source.release(source.context, memory_);
 }
 
 Status upload_now(const Device& device, const Buffer& target, VkDeviceSize offset,
@@ -228,6 +252,9 @@ Status upload_now(const Device& device, const Buffer& target, VkDeviceSize offse
            "upload past the end");
     if (bytes.empty()) return {};
     if (target.mapped()) {
+        if (!device.submits())
+            return fail(ErrorId::usage, "", "vkQueueWaitIdle", "the host keeps its queue",
+                        "write into the mapped buffer when no frame uses it");
         VkResult result = vkQueueWaitIdle(device.queue);
         if (result != VK_SUCCESS) return fail(vulkan_error(result, "vkQueueWaitIdle"));
         std::memcpy(target.mapped() + offset, bytes.data(), bytes.size());

@@ -42,16 +42,17 @@ class Buffer {
     explicit operator bool() const { return buffer_ != VK_NULL_HANDLE; }
 
   private:
+    Status allocate(const BufferSettings& settings);
     const Device* device_ = nullptr;
     VkBuffer buffer_ = VK_NULL_HANDLE;
     VkBufferView view_ = VK_NULL_HANDLE;
-    VkDeviceMemory memory_ = VK_NULL_HANDLE;
+    MemoryRange memory_;
     VkDeviceSize size_bytes_ = 0;
     std::byte* mapped_ = nullptr;
 };
 
 // Copies bytes into a buffer through a staging buffer and waits. For loading, not for frames.
-// Requires offset + bytes <= size.
+// Requires offset + bytes <= size. Errors: usage where the host keeps its queue; limit_exceeded, device_lost.
 Status upload_now(const Device& device, const Buffer& target, VkDeviceSize offset,
                   std::span<const std::byte> bytes);
 // The other way round.

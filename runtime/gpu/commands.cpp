@@ -2,6 +2,7 @@
 
 #include <cassert>
 #include <utility>
+#include "runtime/gpu/vulkan.h"
 
 namespace coppice::gpu {
 
@@ -43,7 +44,7 @@ Result<CommandRing> CommandRing::create(const Device& device, uint32_t slots) {
     VkSemaphoreTypeCreateInfo type{VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO};
     type.semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE;
     VkSemaphoreCreateInfo semaphore{VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO, &type};
-    VkResult result = vkCreateSemaphore(device.handle, &semaphore, nullptr, &ring.timeline_);
+    VkResult result = vkCreateSemaphore(device.handle, &semaphore, device.allocator, &ring.timeline_);
     if (result != VK_SUCCESS) return fail(vulkan_error(result, "vkCreateSemaphore"));
 
     ring.frames_.resize(slots);
@@ -51,7 +52,7 @@ Result<CommandRing> CommandRing::create(const Device& device, uint32_t slots) {
         VkCommandPoolCreateInfo pool{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
         pool.flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT;
         pool.queueFamilyIndex = device.queue_family;
-        result = vkCreateCommandPool(device.handle, &pool, nullptr, &slot.pool);
+        result = vkCreateCommandPool(device.handle, &pool, device.allocator, &slot.pool);
         if (result != VK_SUCCESS) return fail(vulkan_error(result, "vkCreateCommandPool"));
         VkCommandBufferAllocateInfo allocate{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO};
         allocate.commandPool = slot.pool;
@@ -68,7 +69,7 @@ Result<CommandRing> CommandRing::create(const Device& device, uint32_t slots) {
         VkQueryPoolCreateInfo queries{VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO};
         queries.queryType = VK_QUERY_TYPE_TIMESTAMP;
         queries.queryCount = Timestamps::k_mark_limit;
-        result = vkCreateQueryPool(device.handle, &queries, nullptr, &timestamps.pool_);
+        result = vkCreateQueryPool(device.handle, &queries, device.allocator, &timestamps.pool_);
         if (result != VK_SUCCESS) return fail(vulkan_error(result, "vkCreateQueryPool"));
     }
     return ring;
@@ -88,10 +89,10 @@ CommandRing::~CommandRing() {
     if (!device_) return;
     vkDeviceWaitIdle(device_->handle);
     for (Slot& slot : frames_) {
-        vkDestroyQueryPool(device_->handle, slot.timestamps.pool_, nullptr);
-        vkDestroyCommandPool(device_->handle, slot.pool, nullptr);
+        vkDestroyQueryPool(device_->handle, slot.timestamps.pool_, device_->allocator);
+        vkDestroyCommandPool(device_->handle, slot.pool, device_->allocator);
     }
-    vkDestroySemaphore(device_->handle, timeline_, nullptr);
+    vkDestroySemaphore(device_->handle, timeline_, device_->allocator);
 }
 
 Result<CommandRing::Frame> CommandRing::begin() {

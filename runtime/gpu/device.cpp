@@ -1,6 +1,7 @@
 #define VOLK_IMPLEMENTATION
 #define VOLK_DEFAULT_VISIBILITY
 #include "runtime/gpu/device.h"
+#include "runtime/gpu/vulkan.h"
 
 #include <algorithm>
 #include <cstring>
@@ -418,6 +419,8 @@ Result<std::unique_ptr<Device>> Device::adopt(const HostDevice& host) {
     device->instance = host.instance;
     device->handle = host.device;
     device->queue = host.queue;
+    device->memory_source = host.memory;
+    device->allocator = host.allocator;
     candidate.queue_family = host.queue_family;
     DeviceMaker::describe_device(*device, candidate);
     return device;
@@ -431,6 +434,10 @@ Device::~Device() {
     }
     if (messenger_) vkDestroyDebugUtilsMessengerEXT(instance, messenger_, nullptr);
     if (instance) vkDestroyInstance(instance, nullptr);
+}
+
+void Device::wait_idle() const {
+    if (submits()) vkDeviceWaitIdle(handle);
 }
 
 uint32_t Device::find_memory_type(uint32_t type_bits, VkMemoryPropertyFlags required,

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 #include "runtime/core/result.h"
-#include "runtime/gpu/vulkan.h"
+#include "runtime/gpu/vulkan_types.h"
 
 namespace coppice::gpu {
 
@@ -34,15 +34,37 @@ struct DeviceLimits {
     bool is_cpu;
 };
 
+// A buffer's memory, as a host's allocator gives it.
+struct MemoryRange {
+    VkDeviceMemory memory = VK_NULL_HANDLE;
+    VkDeviceSize offset_bytes = 0;
+    void* mapped = nullptr;  // of the range's first byte, where `required` has HOST_VISIBLE; stays mapped
+    void* own = nullptr;     // the allocator's
+};
+
+// In place of vkAllocateMemory; called by whoever makes or destroys a buffer. Ranges must fit `needs` and have all flags
+// `required`, where possible also those `preferred`. A failure is a VkResult; VK_ERROR_OUT_OF_DEVICE_MEMORY becomes
+// limit_exceeded.
+struct MemorySource {
+    void* context = nullptr;
+    VkResult (*allocate)(void* context, const VkMemoryRequirements& needs, VkMemoryPropertyFlags required,
+                         VkMemoryPropertyFlags preferred, MemoryRange& range) = nullptr;
+    void (*release)(void* context, const MemoryRange& range) = nullptr;
+};
+
 // What a host hands in. The device must have been made with the extension VK_KHR_push_descriptor and the
-// features that Device::create names. The queue belongs to Coppice while it draws; nothing here is destroyed
-// by it.
+// features that Device::create names; nothing here is destroyed. With a queue, loading submits to it and waits for the
+// device, and nobody else may use it meanwhile. Without one nothing is ever submitted or waited for: what is loaded is
+// copied by the commands of the next frame recorded, upload_now and read_now are errors, and whatever was made
+// is destroyed by the host's word that the device has finished with it.
 struct HostDevice {
-    VkInstance instance;
-    VkPhysicalDevice physical;
-    VkDevice device;
-    VkQueue queue;
-    uint32_t queue_family;
+    VkInstance instance = VK_NULL_HANDLE;
+    VkPhysicalDevice physical = VK_NULL_HANDLE;
+    VkDevice device = VK_NULL_HANDLE;
+    VkQueue queue = VK_NULL_HANDLE;
+    uint32_t queue_family = 0;                         // of the queue that frames are submitted to
+    MemorySource memory;                               // no allocate: a vkAllocateMemory for each buffer
+    const VkAllocationCallbacks* allocator = nullptr;  // of all objects; outlives the device
 };
 
 // One thread at a time.
@@ -60,12 +82,19 @@ class Device {
     VkInstance instance = VK_NULL_HANDLE;
     VkPhysicalDevice physical = VK_NULL_HANDLE;
     VkDevice handle = VK_NULL_HANDLE;
-    VkQueue queue = VK_NULL_HANDLE;
+    VkQueue queue = VK_NULL_HANDLE;  // none: the host keeps its own
     uint32_t queue_family = 0;
+    MemorySource memory_source;                        // none: vkAllocateMemory
+    const VkAllocationCallbacks* allocator = nullptr;  // of all objects made on the device
     DeviceLimits limits{};
     std::string name;    // "llvmpipe (LLVM 15.0.6, 256 bits)"
     std::string driver;  // name and version
     uint64_t validation_messages() const { return validation_messages_; }  // warnings and errors so far
+
+    // Whether work may be submitted and waited for here: false where the host keeps its queue.
+    bool submits() const { return queue != VK_NULL_HANDLE; }
+    // Until the device has finished all there is; nothing where the host keeps its queue.
+    void wait_idle() const;
 
     // Index of a memory type among `type_bits` with all `required` flags, preferring `preferred`; UINT32_MAX:
     // none.

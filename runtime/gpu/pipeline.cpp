@@ -4,6 +4,7 @@
 #include <cassert>
 #include <utility>
 #include <fmt/format.h>
+#include "runtime/gpu/vulkan.h"
 
 namespace coppice::gpu {
 namespace {
@@ -31,7 +32,8 @@ Result<Pipeline> Pipeline::create(const Device& device, const PipelineSettings& 
     set.flags = VK_DESCRIPTOR_SET_LAYOUT_CREATE_PUSH_DESCRIPTOR_BIT_KHR;
     set.bindingCount = uint32_t(pipeline.bindings_.size());
     set.pBindings = bindings;
-    VkResult result = vkCreateDescriptorSetLayout(device.handle, &set, nullptr, &pipeline.set_layout_);
+    VkResult result =
+        vkCreateDescriptorSetLayout(device.handle, &set, device.allocator, &pipeline.set_layout_);
     if (result != VK_SUCCESS) return fail(vulkan_error(result, "vkCreateDescriptorSetLayout"));
 
     VkPushConstantRange push{VK_SHADER_STAGE_COMPUTE_BIT, 0, settings.push_constant_bytes};
@@ -40,14 +42,14 @@ Result<Pipeline> Pipeline::create(const Device& device, const PipelineSettings& 
     layout.pSetLayouts = &pipeline.set_layout_;
     layout.pushConstantRangeCount = settings.push_constant_bytes ? 1 : 0;
     layout.pPushConstantRanges = &push;
-    result = vkCreatePipelineLayout(device.handle, &layout, nullptr, &pipeline.layout_);
+    result = vkCreatePipelineLayout(device.handle, &layout, device.allocator, &pipeline.layout_);
     if (result != VK_SUCCESS) return fail(vulkan_error(result, "vkCreatePipelineLayout"));
 
     VkShaderModuleCreateInfo code{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO};
     code.codeSize = settings.spirv.size_bytes();
     code.pCode = settings.spirv.data();
     VkShaderModule module = VK_NULL_HANDLE;
-    result = vkCreateShaderModule(device.handle, &code, nullptr, &module);
+    result = vkCreateShaderModule(device.handle, &code, device.allocator, &module);
     if (result != VK_SUCCESS) return fail(vulkan_error(result, "vkCreateShaderModule"));
 
     std::vector<VkSpecializationMapEntry> entries;
@@ -61,8 +63,9 @@ Result<Pipeline> Pipeline::create(const Device& device, const PipelineSettings& 
     info.stage.pName = "main";
     info.stage.pSpecializationInfo = &specialization;
     info.layout = pipeline.layout_;
-    result = vkCreateComputePipelines(device.handle, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline.pipeline_);
-    vkDestroyShaderModule(device.handle, module, nullptr);
+    result = vkCreateComputePipelines(device.handle, VK_NULL_HANDLE, 1, &info, device.allocator,
+                                      &pipeline.pipeline_);
+    vkDestroyShaderModule(device.handle, module, device.allocator);
     if (result != VK_SUCCESS) {
         Error error = vulkan_error(result, "vkCreateComputePipelines");
         error.place += fmt::format(" (kernel \"{}\")", settings.name);
@@ -85,12 +88,12 @@ Pipeline& Pipeline::operator=(Pipeline&& other) noexcept {
 
 Pipeline::~Pipeline() {
     if (!device_) return;
-    vkDestroyPipeline(device_->handle, pipeline_, nullptr);
-    vkDestroyPipelineLayout(device_->handle, layout_, nullptr);
-    vkDestroyDescriptorSetLayout(device_->handle, set_layout_, nullptr);
+    vkDestroyPipeline(device_->handle, pipeline_, device_->allocator);
+    vkDestroyPipelineLayout(device_->handle, layout_, device_->allocator);
+    vkDestroyDescriptorSetLayout(device_->handle, set_layout_, device_->allocator);
 }
 
-void Pipeline::bind(VkCommandBuffer commands, std::span<const Buffer* const> buffers,
+void Pipeline::bind(VkCommandBuffer commands, std::span<const BoundBuffer> buffers,
                     const void* push_constants, uint32_t push_constant_bytes) const {
     assert(buffers.size() == bindings_.size() && "as many buffers as bindings");
     vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline_);
@@ -98,7 +101,7 @@ void Pipeline::bind(VkCommandBuffer commands, std::span<const Buffer* const> buf
     VkBufferView views[k_binding_limit];
     VkWriteDescriptorSet writes[k_binding_limit];
     for (uint32_t i = 0; i < buffers.size(); i++) {
-        const Buffer& buffer = *buffers[i];
+        const Buffer& buffer = *buffers[i].buffer;
         VkWriteDescriptorSet& write = writes[i] = {VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET};
         write.dstBinding = i;
         write.descriptorCount = 1;
@@ -109,8 +112,10 @@ void Pipeline::bind(VkCommandBuffer commands, std::span<const Buffer* const> buf
             write.pTexelBufferView = &views[i];
         } else {
             // A texel buffer may be larger than what a storage binding covers.
-            infos[i] = {buffer.handle(), 0,
-                        std::min(buffer.size_bytes(), device_->limits.storage_range_bytes)};
+            const VkDeviceSize offset = buffers[i].offset_bytes;
+            assert(offset % k_range_alignment_bytes == 0 && offset < buffer.size_bytes());
+            infos[i] = {buffer.handle(), offset,
+                        std::min(buffer.size_bytes() - offset, device_->limits.storage_range_bytes)};
             write.pBufferInfo = &infos[i];
         }
     }

@@ -16,6 +16,15 @@ struct PipelineSettings {
     std::span<const uint32_t> specialization;  // constant_id 0, 1, ...; id 0 is the group size by convention
 };
 
+// A buffer, or of a storage buffer what lies from an offset on, which is a multiple of k_range_alignment_bytes.
+inline constexpr VkDeviceSize k_range_alignment_bytes = 256;  // the most that a device may ask for
+struct BoundBuffer {
+    const Buffer* buffer;
+    VkDeviceSize offset_bytes = 0;
+    BoundBuffer(const Buffer* whole) : buffer(whole) {}
+    BoundBuffer(const Buffer* part_of, VkDeviceSize offset) : buffer(part_of), offset_bytes(offset) {}
+};
+
 class Pipeline {
   public:
     static Result<Pipeline> create(const Device& device, const PipelineSettings& settings);
@@ -25,7 +34,7 @@ class Pipeline {
     ~Pipeline();
 
     // Binds pipeline, buffers (as many as bindings; texel bindings use texel_view()) and push constants.
-    void bind(VkCommandBuffer commands, std::span<const Buffer* const> buffers, const void* push_constants,
+    void bind(VkCommandBuffer commands, std::span<const BoundBuffer> buffers, const void* push_constants,
               uint32_t push_constant_bytes) const;
     // Any number of groups: laid out over x and y so that no axis exceeds the device's limit. The kernel
     // computes its group as gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x and returns where that

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 #include <fmt/format.h>
+#include "runtime/gpu/vulkan.h"
 
 namespace coppice {
 namespace {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include "runtime/window/swapchain.h"
+#include "runtime/gpu/vulkan.h"
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 

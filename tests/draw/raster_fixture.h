@@ -50,7 +50,7 @@ class RasterTest : public ::testing::Test {
         EXPECT_EQ(layout.dropped_entries, 0u);
         auto frame = ring_.begin();
         ASSERT_TRUE(frame);
-        ASSERT_TRUE(rasteriser_->make_shadow_map(shadow_.side_texels));
+        ASSERT_TRUE(rasteriser_->make_shadow_maps(shadow_.side_texels, map_count_));
         rasteriser_->set_frame(0, layout, camera_, light_, picture_, shadow_);
         graph_.record(frame->commands, frame->timestamps);
         ASSERT_TRUE(ring_.submit());
@@ -82,6 +82,7 @@ class RasterTest : public ::testing::Test {
     Light light_;
     PictureSettings picture_;
     ShadowSettings shadow_;
+    uint32_t map_count_ = 1;
     WorkList work_;
     std::vector<uint64_t> words_;
 };

@@ -18,13 +18,16 @@ class ShadowMapTest : public RasterTest {
         across_ = perpendicular_to(to_sun_);
         along_ = glm::cross(to_sun_, across_);
         const float texels = float(k_map_side) / (2.0f * k_half_m), middle = 0.5f * float(k_map_side);
-        ShadowView& view = shadow_.view;
+        ShadowView& view = view_;
         view.row_w = vec4(along_ * warp, 1.0f);
         view.row_x = vec4(across_ * texels, 0.0f) + view.row_w * middle;
         view.row_y = vec4(along_ * texels, 0.0f) + view.row_w * middle;
         view.row_z = vec4(to_sun_ * (0.5f / (2.0f * k_half_m)), 0.0f) + view.row_w * 0.5f;
         view.least_w = 0.1f;
         shadow_.side_texels = k_map_side;
+        drawn_ = {{0, view_, vec4(0, 0, -1, 1)}};
+        shadow_.drawn = drawn_;
+        shadow_.seen = {&view_, 1};
     }
     PackedVertex place(float across_m, float along_m, float sunwards_m, uint32_t surface = 1u) const {
         const vec3 p = across_ * across_m + along_ * along_m + to_sun_ * sunwards_m;
@@ -32,7 +35,7 @@ class ShadowMapTest : public RasterTest {
     }
     void cast(const std::vector<PackedVertex>& vertices, const PartChoice& choice,
               const WorkInstance& instance = {}) {
-        work_.begin(2, 1);
+        work_.begin(1, k_one_part);
         // A caster's sizes are told in the picture's pixels, here a hundredth of a metre.
         work_.part(1).add({}, choice, work_.part(1).add_instance(instance), 0.0f, 0, 100.0f);
         ASSERT_TRUE(rasteriser_->set_geometry({vertices, {}}));
@@ -42,14 +45,17 @@ class ShadowMapTest : public RasterTest {
     void read_map() {
         map_.resize(size_t(k_map_side) * k_map_side);
         ASSERT_TRUE(
-            gpu::read_now(*device_, rasteriser_->shadow_map(), 0, std::as_writable_bytes(std::span(map_))));
+            gpu::read_now(*device_, rasteriser_->shadow_maps(), 0, std::as_writable_bytes(std::span(map_))));
     }
     float depth_at(uint32_t column, uint32_t row) const { return map_[size_t(row) * k_map_side + column]; }
     double covered_texels() const {
         return double(std::count_if(map_.begin(), map_.end(), [](float depth) { return depth > 0.0f; }));
     }
 
+    static constexpr size_t k_one_part[] = {1};
     vec3 to_sun_, across_, along_;
+    ShadowView view_{};
+    std::vector<ShadowMapDraw> drawn_;
     std::vector<float> map_;
 };
 
@@ -186,7 +192,7 @@ TEST_F(ShadowMapTest, ShadowsFallWhereRaysSay) {
         wall_at(9, 9, -8),   wall_at(-9, 9, -8),  wall_at(-5, -1, -2), wall_at(-3, -1, -2),
         wall_at(-3, 1, -2),  wall_at(-5, -1, -2), wall_at(-3, 1, -2), wall_at(-5, 1, -2)};
     auto picture = [&](bool with_casters) {
-        work_.begin(2, 1);
+        work_.begin(1, k_one_part);
         PartChoice wall, both;
         wall.triangles = 2;
         both.triangles = 4;
@@ -215,15 +221,113 @@ TEST_F(ShadowMapTest, ShadowsFallWhereRaysSay) {
     }
 }
 
+// Of three nested maps two are drawn in one frame, the third in the next: none touches another's texels, and each place is looked up
+// in the map for its distance.
+TEST_F(ShadowMapTest, NestedMapsAreDrawnApartAndLookedUpByDistance) {
+    const vec3 to_sun = normalize_or(vec3(-0.5f, 0.3f, 1.0f), vec3(0.0f));
+    look_from(to_sun);
+    map_count_ = 3;
+    const uint32_t grey = encode_surface({vec3(0, 0, 1), vec3(0.5f), 1.0f, false}, 0);
+    auto square = [&](vec3 middle, float half) {
+        std::vector<PackedVertex> corners;
+        for (auto [x, y] : {std::pair(-1, -1), std::pair(1, -1), std::pair(1, 1), std::pair(-1, -1),
+                            std::pair(1, 1), std::pair(-1, 1)})
+            corners.push_back({middle.x + float(x) * half, middle.y + float(y) * half, middle.z, grey});
+        return corners;
+    };
+    // Walls at 4, 8 and 16 m side by side, each with a square before it.
+    std::vector<PackedVertex> vertices;
+    const vec3 walls[] = {vec3(-2.4f, 0, -4), vec3(0, 0, -8), vec3(9.6f, 0, -16)};
+    for (int i = 0; i < 3; ++i)
+        for (const PackedVertex& corner : square(walls[i], 0.2f * -walls[i].z)) vertices.push_back(corner);
+    for (int i = 0; i < 3; ++i)
+        for (const PackedVertex& corner : square(walls[i] + to_sun * 1.5f, 0.05f * -walls[i].z))
+            vertices.push_back(corner);
+    // The same map at three scales.
+    ShadowView views[3];
+    for (int i = 0; i < 3; ++i) {
+        const float texels = 24.0f / float(1 << i);
+        views[i].row_x = vec4(across_ * texels, 128.0f);
+        views[i].row_y = vec4(along_ * texels, 128.0f);
+        views[i].row_z = vec4(to_sun_ / 80.0f, 0.25f);
+        views[i].row_w = vec4(0, 0, 0, 1);
+        views[i].least_w = 0.5f;
+    }
+    shadow_.seen = views;
+    shadow_.first_reach_m = 6.0f;
+    shadow_.first_texel_m = 1.0f / 24.0f;
+    ASSERT_TRUE(rasteriser_->set_geometry({vertices, {}}));
+    PartChoice three;
+    three.triangles = 6;
+    // The squares alone: walls would shadow each other.
+    PartGeometry squares{};
+    squares.first_triangle_vertex = 18;
+    auto frame = [&](std::vector<uint32_t> maps) {
+        drawn_.clear();
+        for (uint32_t map : maps) drawn_.push_back({map, views[map], vec4(0, 0, 0, 1), 1.0f});
+        shadow_.drawn = drawn_;
+        const std::vector<size_t> parts(maps.size(), 1);
+        work_.begin(1, parts);
+        work_.part(0).add({}, three, work_.part(0).add_instance({}));
+        for (size_t i = 0; i < maps.size(); ++i)
+            work_.part(1 + i).add(squares, three, work_.part(1 + i).add_instance({}), 0.0f, 0, 100.0f);
+        draw_work();
+        return colors();
+    };
+    auto texels = [&] {
+        std::vector<float> all(size_t(3) * k_map_side * k_map_side);
+        EXPECT_TRUE(gpu::read_now(*device_, rasteriser_->shadow_maps(), 0,
+                                  std::as_writable_bytes(std::span(all))));
+        return all;
+    };
+    auto covered = [](std::span<const float> map) {
+        return std::count_if(map.begin(), map.end(), [](float depth) { return depth > 0.0f; });
+    };
+    const size_t size = size_t(k_map_side) * k_map_side;
+    frame({0, 2});
+    const std::vector<float> two = texels();
+    const std::vector<uint32_t> shadowed = frame({1});
+    const std::vector<float> all = texels();
+    EXPECT_TRUE(std::equal(two.begin(), two.begin() + size, all.begin()));
+    EXPECT_TRUE(std::equal(two.begin() + 2 * size, two.end(), all.begin() + 2 * size));
+    EXPECT_NEAR(double(covered(std::span(all).subspan(size, size))),
+                4.0 * double(covered(std::span(all).subspan(2 * size))), 600.0);
+    EXPECT_GT(covered(std::span(all).first(size)), 1000);
+    // Each wall has its square's shadow where rays say.
+    shadow_.side_texels = 0;
+    shadow_.drawn = {};
+    work_.begin(1);
+    work_.part(0).add({}, three, work_.part(0).add_instance({}));
+    draw_work();
+    const std::vector<uint32_t> open = colors();
+    size_t dark = 0, wrong = 0;
+    for (const vec3& wall : walls)
+        for (float v = -0.1f; v < 0.1f; v += 0.004f)
+            for (float u = -0.1f; u < 0.1f; u += 0.004f) {
+                // The square's shadow lies in the wall's middle.
+                const vec3 on_wall = wall + vec3(u, v, 0) * -wall.z;
+                const float inside = (0.05f - std::max(std::fabs(u), std::fabs(v))) * -wall.z;
+                const float texel_m = on_wall.z > -6.0f ? 1.0f / 24.0f : on_wall.z > -12.0f ? 1.0f / 12.0f : 1.0f / 6.0f;
+                if (std::fabs(inside) < 2.5f * texel_m) continue;
+                const uint32_t column = uint32_t(128.0f + on_wall.x * 128.0f / -on_wall.z);
+                const uint32_t row = uint32_t(128.0f - on_wall.y * 128.0f / -on_wall.z);
+                const bool is_dark = shadowed[row * k_side + column] != open[row * k_side + column];
+                wrong += is_dark != (inside > 0.0f);
+                dark += is_dark;
+            }
+    EXPECT_EQ(wrong, 0u);
+    EXPECT_GT(dark, 100u);
+}
+
 TEST_F(ShadowMapTest, WithoutShadowsThereIsNoMapAndNoPass) {
     PartChoice choice;
     choice.triangles = 1;
     draw({at(10, 10, 5), at(100, 10, 5), at(10, 100, 5)}, choice);
     const uint64_t bytes_before = rasteriser_->gpu_bytes();
-    EXPECT_LE(rasteriser_->shadow_map().size_bytes(), 16u);
+    EXPECT_LE(rasteriser_->shadow_maps().size_bytes(), 16u);
     look_from(vec3(0, 1, 0));
     cast({place(-9, -9, 0), place(9, -9, 0), place(-9, 9, 0)}, choice);
-    EXPECT_EQ(rasteriser_->shadow_map().size_bytes(), uint64_t(k_map_side) * k_map_side * 4);
+    EXPECT_EQ(rasteriser_->shadow_maps().size_bytes(), uint64_t(k_map_side) * k_map_side * 4);
     EXPECT_GT(rasteriser_->gpu_bytes(), bytes_before);
     // Off again, nothing of it is left, not even the number of large triangles of the last frame that had one.
     shadow_ = {};
@@ -232,7 +336,8 @@ TEST_F(ShadowMapTest, WithoutShadowsThereIsNoMapAndNoPass) {
         EXPECT_EQ(rasteriser_->dropped_triangles(), 0u);
     }
     EXPECT_EQ(rasteriser_->gpu_bytes(), bytes_before);
-    EXPECT_FALSE(rasteriser_->make_shadow_map(20000));
+    EXPECT_FALSE(rasteriser_->make_shadow_maps(20000, 1));
+    EXPECT_FALSE(rasteriser_->make_shadow_maps(256, k_most_work_maps + 1));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "shaders/affine.comp.h"
 #include "shaders/count.comp.h"
 #include "tests/gpu/validated_device.h"
+#include "runtime/gpu/vulkan.h"
 
 namespace coppice {
 namespace {
@@ -67,7 +68,7 @@ struct Frames : gpu::ValidatedDevice {
     FrameGraph::Record compute(ResourceIndex source, ResourceIndex target, uint32_t factor,
                                const uint32_t* term) {
         return [this, source, target, factor, term](VkCommandBuffer commands) {
-            const Buffer* bound[] = {graph.buffer(source), graph.buffer(target)};
+            const gpu::BoundBuffer bound[] = {graph.buffer(source), graph.buffer(target)};
             Push push{k_element_count, factor, *term};
             affine.bind(commands, bound, &push, sizeof(push));
             affine.dispatch(commands, (k_element_count - 1) / device->limits.group_size + 1);
@@ -76,7 +77,7 @@ struct Frames : gpu::ValidatedDevice {
 
     FrameGraph::Record add(ResourceIndex counters, uint32_t counter_count, uint32_t amount) {
         return [this, counters, counter_count, amount](VkCommandBuffer commands) {
-            const Buffer* bound[] = {graph.buffer(counters)};
+            const gpu::BoundBuffer bound[] = {graph.buffer(counters)};
             Push push{k_element_count, counter_count, amount};
             count.bind(commands, bound, &push, sizeof(push));
             count.dispatch(commands, (k_element_count - 1) / device->limits.group_size + 1);
@@ -215,7 +216,7 @@ TEST_F(Frames, an_indirect_dispatch_waits_for_its_arguments) {
     graph.add_pass("count",
                    {{arguments, BufferAccess::indirect_read}, {counters, BufferAccess::compute_atomic}},
                    [&](VkCommandBuffer commands) {
-                       const Buffer* bound[] = {graph.buffer(counters)};
+                       const gpu::BoundBuffer bound[] = {graph.buffer(counters)};
                        Push push{k_element_count, 1, 1};
                        count.bind(commands, bound, &push, sizeof(push));
                        count.dispatch_indirect(commands, *graph.buffer(arguments), 0);

@@ -4,6 +4,7 @@
 #include <vector>
 #include "runtime/gpu/buffer.h"
 #include "tests/gpu/validated_device.h"
+#include "runtime/gpu/vulkan.h"
 
 namespace coppice::gpu {
 namespace {

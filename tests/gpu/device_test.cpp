@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include "runtime/core/log.h"
 #include "runtime/gpu/buffer.h"
+#include "runtime/gpu/vulkan.h"
 
 namespace coppice::gpu {
 namespace {

@@ -1,4 +1,5 @@
 #include "runtime/gpu/pipeline.h"
+#include "runtime/gpu/vulkan.h"
 
 #include <algorithm>
 #include <vector>
@@ -55,7 +56,7 @@ struct KeepGreatest : ValidatedDevice {
     }
 
     void bind(VkCommandBuffer commands) {
-        const Buffer* buffers[] = {&words, &key_texels};
+        const BoundBuffer buffers[] = {&words, &key_texels};
         pipeline.bind(commands, buffers, &push, sizeof(push));
     }
 
@@ -125,7 +126,7 @@ TEST_F(KeepGreatest, as_many_as_the_device_says) {
     ASSERT_TRUE(arguments);
     auto frame = ring.begin();
     ASSERT_TRUE(frame);
-    const Buffer* buffers[] = {&*arguments};
+    const BoundBuffer buffers[] = {&*arguments};
     uint32_t group_count = 1'111;
     writer->bind(frame->commands, buffers, &group_count, 4);
     writer->dispatch(frame->commands, 1);

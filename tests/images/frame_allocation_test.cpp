@@ -29,6 +29,8 @@ TEST(FrameAllocation, WarmFramesAllocateNothing) {
         if (budget == 0) {
             EXPECT_GT((*hills)->allocations, 0u) << "the count counts";
         }
+        // Which shadow maps are left from the flight before differs from the first to the second.
+        fly();
         fly();
         EXPECT_EQ((*hills)->allocations, 0u) << "budget " << budget;
         EXPECT_GT((*hills)->vegetation->report().work_entries, 0u);

@@ -66,6 +66,7 @@ TEST(Includes, StagesOfVegetationIncludeOnlyWhatStandsBefore) {
                  {{"plant", {}},
                   {"cook", {"plant"}},
                   {"eco", {"plant"}},
+                  {"query", {"plant", "eco"}},
                   {"cull", {"plant", "eco"}},
                   {"lod", {"plant", "eco", "cull"}},
                   {"shadow", {"plant", "eco", "cull", "lod"}},
@@ -98,6 +99,21 @@ TEST(Includes, PluginsIncludeNoTool) {
             EXPECT_FALSE(include.to.starts_with(above)) << describe(include);
 }
 
+// What a scene says, what changes it, who keeps that, and who shows it: only the last two know a device or a window.
+TEST(Includes, StagesOfTheEditorIncludeOnlyWhatStandsBefore) {
+    expect_edges("editor", 2,
+                 {{"document", {}},
+                  {"commands", {"document"}},
+                  {"session", {"document", "commands"}},
+                  {"view", {"document", "commands", "session"}},
+                  {"window", {"document", "commands", "session", "view"}}});
+    for (const char* folder : {"editor/document", "editor/commands", "editor/session"})
+        for (const Include& include : find_includes(folder))
+            for (const char* above : {"runtime/gpu/", "runtime/frame/", "runtime/window/", "plugins/vegetation/draw/",
+                                      "plugins/vegetation/vegetation.h", "tools/"})
+                EXPECT_FALSE(include.to.starts_with(above)) << describe(include);
+}
+
 // Of another plugin, its interface and the descriptions it hands over, nothing else.
 TEST(Includes, PluginsKnowEachOtherByTheirInterfaces) {
     const std::set<std::string> shared{"plugins/modeller/modeller.h",
@@ -117,9 +133,10 @@ TEST(Includes, PluginsKnowEachOtherByTheirInterfaces) {
 }
 
 TEST(Includes, OnlyTheWindowKnowsTheWindowSystem) {
-    for (const char* folder : {"runtime", "plugins", "tools"})
+    for (const char* folder : {"runtime", "plugins", "tools", "editor"})
         for (const Include& include : find_includes(folder))
-            EXPECT_TRUE(!include.to.starts_with("GLFW/") || include.from.starts_with("runtime/window/"))
+            EXPECT_TRUE(!include.to.starts_with("GLFW/") || include.from.starts_with("runtime/window/") ||
+                        include.from.starts_with("editor/window/"))
                 << describe(include);
     for (const char* folder : {"runtime", "plugins", "tools"})
         for (const SourceFile& file : read_sources(folder)) {

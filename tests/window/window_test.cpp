@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
+#include "runtime/gpu/vulkan.h"
 
 namespace coppice {
 namespace {

@@ -169,7 +169,11 @@ class ShadowMethod final : public AccuracyMethod {
     std::string name() const override { return name_; }
     std::string what() const override { return what_; }
     std::string quality_name() const override { return "1024 / side"; }
-    std::vector<double> qualities() const override { return {0.25, 0.5, 1.0, 1.5, 2.0}; }
+    // Twelve nested maps of more texels a side are larger than a buffer may be.
+    std::vector<double> qualities() const override {
+        return kind_ == ShadowKind::clipmap ? std::vector<double>{1.0, 4.0 / 3.0, 2.0, 3.0}
+                                            : std::vector<double>{0.25, 0.5, 1.0, 1.5, 2.0};
+    }
     double default_quality() const override { return 1.0; }
     Status prepare(const MethodInput& input) override {
         original_ = input.original;
@@ -275,6 +279,9 @@ std::vector<std::unique_ptr<AccuracyMethod>> make_accuracy_methods() {
     methods.push_back(std::make_unique<ShadowMethod>(
         "shadows, light space", "The defaults with a light-space perspective shadow map (Wimmer et al. 2004).",
         ShadowKind::light_space));
+    methods.push_back(std::make_unique<ShadowMethod>(
+        "shadows, clipmap", "The defaults with nested shadow maps, which are made once for a view.",
+        ShadowKind::clipmap));
     for (Substitute& substitute : substitutes())
         methods.push_back(std::make_unique<SubstituteMethod>(std::move(substitute)));
     return methods;

@@ -150,16 +150,18 @@ void add_play(CLI::App& app, Command& chosen) {
     const std::map<std::string, ShadowKind> shadow_kinds{{"none", ShadowKind::none},
                                                          {"uniform", ShadowKind::uniform},
                                                          {"perspective", ShadowKind::perspective},
-                                                         {"light-space", ShadowKind::light_space}};
+                                                         {"light-space", ShadowKind::light_space},
+                                                         {"clipmap", ShadowKind::clipmap}};
     play->add_option("--shadows", options.settings.shadows,
-                     "The sun's shadow map: none, uniform, perspective or light-space")
+                     "The sun's shadow maps: clipmap, nested maps that stay while nothing moves; of each frame anew uniform, perspective\n"
+                     "or light-space; none")
         ->transform(CLI::CheckedTransformer(shadow_kinds).description(""))
-        ->default_str("light-space");
+        ->default_str("clipmap");
     play->add_option("--sun", command->sun,
                      "Azimuth and elevation of the sun in degrees, as 135,20, in place of the scene's own")
         ->type_name("AZIMUTH,ELEVATION");
     play->add_option("--shadow-size", options.settings.shadow_side_texels,
-                     "Texels of a side of the shadow map. 0: about as many texels as the picture has pixels")
+                     "Texels of a side of a shadow map. 0: as the picture's pixels ask for")
         ->check(CLI::Range(0, 16384))
         ->capture_default_str();
     play->add_option("--shadow-distance", options.settings.shadow_distance_m,

@@ -1,6 +1,7 @@
 #include "tools/coppice/play_report.h"
 
 #include <fmt/format.h>
+#include <numeric>
 #include "runtime/core/hash.h"
 #include "tools/coppice/statistics.h"
 
@@ -61,6 +62,14 @@ std::vector<Figure> play_figures(const PlayRecord& record) {
         {"leaves", count([](auto& f) { return f.report.leaves; }), "per frame", {}},
         {"terrain_triangles", count([](auto& f) { return f.report.terrain_triangles; }), "per frame", {}},
         {"shadow_map_side", count([](auto& f) { return f.report.shadow_side_texels; }), "texels", {}},
+        {"shadow_maps_a_frame",
+         record.frames.empty() ? 0.0
+                               : std::accumulate(record.frames.begin(), record.frames.end(), 0.0,
+                                                 [](double sum, const FrameRecord& frame) {
+                                                     return sum + frame.report.shadow_maps;
+                                                 }) /
+                                     double(record.frames.size()),
+         "mean", {}},
         {"shadow_plants", count([](auto& f) { return f.report.shadow_plants; }), "per frame", {}},
         {"shadow_triangles", count([](auto& f) { return f.report.shadow_triangles; }), "per frame", {}},
         {"shadow_points", count([](auto& f) { return f.report.shadow_points; }), "per frame", {}},
@@ -118,7 +127,7 @@ std::string frames_csv(const PlayRecord& record) {
     for (const std::string& pass : record.passes) csv += ",gpu_" + pass + "_ms";
     csv +=
         ",sample_distance_px,vertex_budget,vertices,triangles,lines,points,leaves,terrain_triangles,full_triangles,"
-        "shadow_map_side,shadow_plants,shadow_triangles,shadow_lines,shadow_points,shadow_leaves,"
+        "shadow_map_side,shadow_maps,shadow_plants,shadow_triangles,shadow_lines,shadow_points,shadow_leaves,"
         "tiles_touched,clouds,tiles_missing,stream_bytes_read,stream_resident_bytes,plants_visible,tiles_"
         "hidden,"
         "plants_hidden,work_entries,dropped_entries\n";
@@ -129,10 +138,10 @@ std::string frames_csv(const PlayRecord& record) {
                            report.write_ms);
         for (double ms : frame.pass_ms) csv += fmt::format(",{:.4f}", ms);
         csv +=
-            fmt::format(",{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", report.sample_distance_px,
+            fmt::format(",{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", report.sample_distance_px,
                         report.vertex_budget, report.vertices, report.triangles, report.lines, report.points,
                         report.leaves, report.terrain_triangles, report.full_triangles,
-                        report.shadow_side_texels, report.shadow_plants, report.shadow_triangles,
+                        report.shadow_side_texels, report.shadow_maps, report.shadow_plants, report.shadow_triangles,
                         report.shadow_lines, report.shadow_points, report.shadow_leaves, report.tiles_touched, report.clouds,
                         report.tiles_missing, report.stream_bytes_read, report.stream_resident_bytes,
                         report.plants_visible, report.tiles_hidden, report.plants_hidden, report.work_entries,

@@ -94,7 +94,9 @@ bool TileList::all_children_drawable(const TileLevels& levels, const Pending& at
         child.row = levels.first_child + i;
         child.stand_in_spread_px = stand_in_spread_px;
         child = arrive(child);
-        if (levels_of_row_[child.row].cloud != TileLevels::k_none) continue;
+        // What is not streamed is in memory: what has no cloud there is drawn plant by plant.
+        const TileLevels& of_child = levels_of_row_[child.row];
+        if (of_child.cloud != TileLevels::k_none || !of_child.is_streamed) continue;
         const SeenTile seen = see(child, frustum, settings);
         if (!seen.outside && !seen.hidden) return false;
     }

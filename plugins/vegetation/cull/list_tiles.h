@@ -61,6 +61,8 @@ class TileList {
 
     // Of all that the last list could have had in view; empty: there are no tiles.
     const Box& bounds_camera() const { return bounds_camera_; }
+    // A place that moves with all there is.
+    dvec3 origin_world() const { return tile_of_row_.empty() ? dvec3(0.0) : tile_of_row_[0].origin_world; }
     std::span<const PlantRun> runs() const { return runs_; }
     std::span<const CloudTile> clouds() const { return clouds_; }
     // Of tiles that are streamed; the same block may be wished for from several places.

@@ -111,9 +111,11 @@ void expand_clouds(std::span<const CloudTile> tiles, const SceneGeometry& geomet
                          std::sqrt(settings.splat_factor / std::max(tile.finest_density, 1e-12f)));
         // A tile around the image plane has no depth to go by: all of it is drawn as its nearest place asks for.
         const vec3 center = tile.bounds_camera.center();
-        const float depth_m = std::max(glm::dot(frustum.forward, center), 0.0f);
+        const float distance_m = std::max(glm::length(center), frustum.near_m);
+        const float depth_m = frustum.corner_cos < 1.0f ? std::max(glm::dot(frustum.forward, center), 0.0f)
+                                                        : distance_m;  // it looks everywhere
         const PartChoice choice =
-            choose_cloud(cloud.part, cloud.densities, seen.pixels_per_meter, glm::length(center), depth_m,
+            choose_cloud(cloud.part, cloud.densities, seen.pixels_per_meter, distance_m, depth_m,
                          seen.nearest_pixels_per_meter, tile_settings);
         if (choice.points == 0) continue;
         // From the beginning also at rest: what is asked for is the prefix up to a density.

@@ -8,6 +8,8 @@
 namespace coppice {
 namespace {
 
+static_assert(k_most_shadow_maps == k_most_work_maps);
+
 // Of d': what throws shadows is drawn with so much coarser primitives than what is seen. Measured: twice as coarse takes half
 // the time and adds nothing to the picture's error (docs/shadows.md).
 constexpr float k_caster_coarseness = 2.0f;
@@ -26,71 +28,189 @@ uint32_t side_of(uint32_t wanted_texels, uint64_t pixel_count) {
     return std::min((uint32_t(std::sqrt(double(pixel_count))) / k_step + 1) * k_step, k_most);
 }
 
+// Of nested maps: one lies behind the other where buffers may be bound.
+uint32_t nested_side_of(uint32_t wanted_texels, float focal_px) {
+    constexpr uint32_t k_step = 64, k_most = 4096;
+    if (wanted_texels == 0) return Clipmap::side_for(focal_px);
+    return std::clamp((wanted_texels + k_step - 1) / k_step * k_step, k_step, k_most);
+}
+
 float farthest_along(const Box& box, vec3 direction) {
     const vec3 corner(direction.x > 0.0f ? box.max.x : box.min.x, direction.y > 0.0f ? box.max.y : box.min.y,
                       direction.z > 0.0f ? box.max.z : box.min.z);
     return glm::dot(corner, direction);
 }
 
+float farthest(const Box& box) {
+    return box.empty() ? 0.0f : glm::length(glm::max(glm::abs(box.min), glm::abs(box.max)));
+}
+
 }  // namespace
 
-void FrameCasters::list(const TileList::Tiles& tiles, const TileList::Plants& plants,
-                       const SceneGeometry& geometry, std::span<const Ground> grounds, const Frustum& view,
-                       dvec3 camera_world, const Light& light, const FrameSettings& settings,
-                       uint64_t pixel_count, uint32_t refused_side_texels, const Box& scene_bounds, float nearest_m) {
-    const vec3 to_sun = normalize_or(light.direction_to_sun, vec3(0.0f));
-    const bool has_sun = to_sun != vec3(0.0f) && light.sun_color != vec3(0.0f);
-    const float far_m = std::min(settings.shadow_distance_m, farthest_along(scene_bounds, view.forward));
-    const bool is_lit = settings.view == RepresentationView::lit;
-    side_texels_ = settings.shadows != ShadowKind::none && is_lit && has_sun && far_m > view.near_m
-                       ? side_of(settings.shadow_side_texels, pixel_count)
-                       : 0;
-    if (side_texels_ >= refused_side_texels) side_texels_ = 0;
-    if (!any()) return;
-    to_sun_ = to_sun;
-    frustum_ = make_caster_frustum(view, to_sun, far_m);
-    const FrameSettings of_casters = caster_settings(settings);
-    spread_px_ = widest_spread_px(geometry.least_importance, geometry.most_line_width, of_casters);
+void MapCasters::list(const TileList::Tiles& tiles, const TileList::Plants& plants,
+                      const SceneGeometry& geometry, std::span<const Ground> grounds, const Frustum& frustum,
+                      dvec3 camera_world, const FrameSettings& settings) {
+    frustum_ = frustum;
+    settings_ = caster_settings(settings);
+    spread_px_ = widest_spread_px(geometry.least_importance, geometry.most_line_width, settings_);
     tiles_.list(tiles, plants, frustum_, camera_world,
-                {of_casters.level_of_detail
-                     ? of_casters.sample_distance_px / std::sqrt(of_casters.splat_factor)
-                     : 0.0f,
+                {settings_.level_of_detail ? settings_.sample_distance_px / std::sqrt(settings_.splat_factor)
+                                           : 0.0f,
                  vec3(0.0f), nullptr, spread_px_, 0.0f});
-    grounds_.list(grounds, frustum_, camera_world, ground_error_px(settings));
-
-    // Sides of the picture, from its planes.
-    const vec3 right = vec3(view.planes[1]), top = vec3(view.planes[3]);
-    const float tangent_x = glm::dot(right, view.forward) / glm::dot(right, view.right);
-    const float tangent_y = glm::dot(top, view.forward) / glm::dot(top, view.up);
-    // Along the view, what lies at a distance is nearer. What is nearer still, as single leaves around the viewer are, is lit as without a
-    // map: it would be finer there than leaves are bent.
-    const float near_m = std::isfinite(nearest_m)
-                             ? std::clamp(nearest_m * view.corner_cos, view.near_m, 0.5f * (view.near_m + far_m))
-                             : view.near_m;
-    view_ = fit_shadow(settings.shadows, {view.right, view.up, view.forward, tangent_x, tangent_y, near_m, far_m,
-                                          scene_bounds, scene_bounds, to_sun, side_texels_});
+    grounds_.list(grounds, frustum_, camera_world, ground_error_px(settings_));
 }
 
-void FrameCasters::see(const SceneGeometry& geometry) {
-    if (any()) plants_.see(tiles_, geometry, frustum_, nullptr, spread_px_);
+void MapCasters::draw(const SceneGeometry& geometry, uint32_t rest_index, float least_slope, WorkList& work,
+                      size_t first_part) {
+    plants_.draw(tiles_, geometry, frustum_, settings_, rest_index, work, first_part + 1);
+    ground_expander_.expand(grounds_.in_view(), geometry, frustum_, ground_error_px(settings_),
+                            work.part(first_part), least_slope);
 }
 
-uint32_t FrameCasters::plant_count() const {
+uint32_t MapCasters::plant_count() const {
     uint32_t visible = 0, hidden = 0;
     uint64_t triangles = 0;
-    if (any()) plants_.count(visible, hidden, triangles);
+    plants_.count(visible, hidden, triangles);
     return visible;
 }
 
-void FrameCasters::draw(const SceneGeometry& geometry, const FrameSettings& settings, uint32_t rest_index,
-                        WorkList& work, size_t first_part) {
-    if (!any()) return;
-    plants_.draw(tiles_, geometry, frustum_, caster_settings(settings), rest_index, work, first_part + 1);
+void FrameCasters::list(const TileList::Tiles& tiles, const TileList::Plants& plants,
+                        const SceneGeometry& geometry, std::span<const Ground> grounds, const View& view,
+                        const Light& light, const FrameSettings& settings) {
+    const vec3 to_sun = normalize_or(light.direction_to_sun, vec3(0.0f));
+    const bool has_sun = to_sun != vec3(0.0f) && light.sun_color != vec3(0.0f);
+    const float far_m =
+        std::min(settings.shadow_distance_m, farthest_along(view.scene_bounds, view.frustum.forward));
+    const bool is_lit = settings.view == RepresentationView::lit;
+    drop();
+    is_nested_ = settings.shadows == ShadowKind::clipmap;
+    // Where others, or none, are drawn, these do not stay.
+    if (!is_nested_) clipmap_.forget();
+    if (settings.shadows == ShadowKind::none || !is_lit || !has_sun || !(far_m > view.frustum.near_m))
+        return clipmap_.forget();
+    to_sun_ = to_sun;
+    far_m_ = settings.shadow_distance_m;
+    side_texels_ = is_nested_ ? nested_side_of(settings.shadow_side_texels, view.frustum.focal_px)
+                              : side_of(settings.shadow_side_texels, view.pixel_count);
+    if (side_texels_ >= view.refused_side_texels) {
+        clipmap_.forget();
+        return drop();
+    }
+    if (is_nested_)
+        list_nested(tiles, plants, geometry, grounds, view, settings, far_m);
+    else
+        list_warped(tiles, plants, geometry, grounds, view, settings, far_m);
+}
+
+// With the viewer's level of detail at twice its d', in the view's shift towards the sun.
+void FrameCasters::list_warped(const TileList::Tiles& tiles, const TileList::Plants& plants,
+                               const SceneGeometry& geometry, std::span<const Ground> grounds,
+                               const View& view, const FrameSettings& settings, float far_m) {
+    map_count_ = 1;
+    const Frustum& of = view.frustum;
+    casters_[0].list(tiles, plants, geometry, grounds, make_caster_frustum(of, to_sun_, far_m),
+                     view.camera_world, settings);
+    // Sides of the picture, from its planes.
+    const vec3 right = vec3(of.planes[1]), top = vec3(of.planes[3]);
+    const float tangent_x = glm::dot(right, of.forward) / glm::dot(right, of.right);
+    const float tangent_y = glm::dot(top, of.forward) / glm::dot(top, of.up);
+    // Along the view, what lies at a distance is nearer. What is nearer still, as single leaves around the viewer are, is lit as without a
+    // map: it would be finer there than leaves are bent.
+    const float near_m = std::isfinite(view.nearest_m)
+                             ? std::clamp(view.nearest_m * of.corner_cos, of.near_m, 0.5f * (of.near_m + far_m))
+                             : of.near_m;
+    seen_.push_back(fit_shadow(settings.shadows, {of.right, of.up, of.forward, tangent_x, tangent_y, near_m, far_m,
+                                                  view.scene_bounds, view.scene_bounds, to_sun_, side_texels_}));
+    drawn_.push_back({0, seen_[0], vec4(of.forward, of.corner_cos), 0.0f});
+}
+
+// As fine as the maps' texels, wherever the viewer is, so that a map shows the same whenever it is made.
+void FrameCasters::list_nested(const TileList::Tiles& tiles, const TileList::Plants& plants,
+                               const SceneGeometry& geometry, std::span<const Ground> grounds,
+                               const View& view, const FrameSettings& settings, float far_m) {
+    map_count_ = Clipmap::count_for(side_texels_, settings.shadow_distance_m);
+    // Along the view a place is nearer than it is; off the axis as much farther as corners are.
+    const float farthest_m = std::min(far_m / view.frustum.corner_cos, farthest(view.scene_bounds));
+    clipmap_.update({view.camera_world, view.origin_world, view.motion_m, to_sun_, view.frustum.focal_px, 0.5f * view.nearest_m,
+                     farthest_m, view.scene_bounds, side_texels_, map_count_});
+    FrameSettings of_maps = settings;
+    of_maps.level_of_detail = true;
+    of_maps.sample_distance_px = 1.0f;
+    of_maps.line_sample_distance_px = 0.0f;
+    for (uint32_t map : clipmap_.due()) {
+        // At that distance 2 px are a texel.
+        const float least_distance_m = Clipmap::texel_m(map) * view.frustum.focal_px / k_caster_coarseness;
+        casters_[map].list(tiles, plants, geometry, grounds,
+                           clipmap_.casters(map, view.frustum, view.camera_world, least_distance_m),
+                           view.camera_world, of_maps);
+        drawn_.push_back({map, clipmap_.view(map, view.camera_world), vec4(0.0f, 0.0f, 0.0f, 1.0f), least_distance_m});
+    }
+    for (uint32_t map = clipmap_.first(); map <= clipmap_.last(); ++map)
+        seen_.push_back(clipmap_.view(map, view.camera_world));
+}
+
+void FrameCasters::drop() {
+    side_texels_ = 0;
+    drawn_.clear();
+    seen_.clear();
+    part_counts_.clear();
+}
+
+ShadowSettings FrameCasters::maps() const {
+    ShadowSettings maps;
+    maps.side_texels = side_texels_;
+    maps.drawn = drawn_;
+    maps.seen = seen_;
+    maps.far_m = far_m_;
+    if (!is_nested_) return maps;
+    maps.first_map = clipmap_.first();
+    maps.first_reach_m = Clipmap::reach_m(maps.first_map, side_texels_);
+    maps.first_texel_m = Clipmap::texel_m(maps.first_map);
+    return maps;
+}
+
+void FrameCasters::see(const SceneGeometry& geometry) {
+    part_counts_.clear();
+    for (const ShadowMapDraw& draw : drawn_) {
+        casters_[draw.map].see(geometry);
+        part_counts_.push_back(casters_[draw.map].part_count());
+    }
+}
+
+uint32_t FrameCasters::plant_count() const {
+    uint32_t count = 0;
+    for (const ShadowMapDraw& draw : drawn_) count += casters_[draw.map].plant_count();
+    return count;
+}
+
+void FrameCasters::add_wishes(std::vector<TileWish>& wishes) const {
+    // What only throws shadows comes behind what is seen.
+    constexpr float k_caster_share = 0.25f;
+    const uint32_t first = is_nested_ ? clipmap_.first() : 0, last = is_nested_ ? clipmap_.last() : 0;
+    for (uint32_t map = first; any() && map <= last; ++map)
+        for (TileWish wish : casters_[map].wishes()) {
+            wish.priority *= k_caster_share;
+            wishes.push_back(wish);
+        }
+}
+
+void FrameCasters::draw(const SceneGeometry& geometry, uint32_t rest_index, WorkList& work, size_t first_part) {
     // Where a ray to the sun enters the ground, the ground rises more than the ray.
     const float level_m = std::sqrt(to_sun_.x * to_sun_.x + to_sun_.z * to_sun_.z);
     const float rise = to_sun_.y > 0.0f ? to_sun_.y / std::max(level_m, 1e-6f) : 0.0f;
-    ground_expander_.expand(grounds_.in_view(), geometry, frustum_, ground_error_px(settings),
-                            work.part(first_part), rise);
+    for (size_t i = 0; i < drawn_.size(); ++i) {
+        // Maps that stay are of no frame in particular.
+        casters_[drawn_[i].map].draw(geometry, is_nested_ ? 0 : rest_index, rise, work, first_part);
+        first_part += part_counts_[i];
+    }
+}
+
+void FrameCasters::commit(bool is_whole) {
+    if (!is_nested_ || !any()) return;
+    if (!is_whole) return clipmap_.forget();
+    std::array<bool, k_most_work_maps> incomplete{};
+    for (size_t i = 0; i < drawn_.size(); ++i) incomplete[i] = casters_[drawn_[i].map].is_incomplete();
+    clipmap_.commit(std::span(incomplete).first(drawn_.size()));
 }
 
 }  // namespace coppice

@@ -1,49 +1,100 @@
-// What throws shadows into the picture, and the map it is drawn into: found, looked at and listed as what is seen is, with the
-// viewer's level of detail at twice its d', in the view's shift towards the sun.
+// What throws shadows into the picture, and the maps it is drawn into: found, looked at and listed as what is seen is.
 #pragma once
 #include "plugins/vegetation/draw/expand_ground.h"
 #include "plugins/vegetation/draw/frame_plants.h"
-#include "plugins/vegetation/shadow/shadow_view.h"
+#include "plugins/vegetation/draw/rasteriser.h"
+#include "plugins/vegetation/shadow/clipmap.h"
 
 namespace coppice {
 
-class FrameCasters {
+// Of one map.
+class MapCasters {
   public:
-    // Which tiles, and the map's view. Without a sun, or with shadows off, there are none, and where the map would be as large as
-    // one that found no room. pixel_count: of the picture; scene_bounds: all that there is, relative to the camera;
-    // nearest_m: from the viewer to what is seen, about: the map is as fine as a pixel there.
+    // What of the world the frustum holds.
     void list(const TileList::Tiles& tiles, const TileList::Plants& plants, const SceneGeometry& geometry,
-              std::span<const Ground> grounds, const Frustum& view, dvec3 camera_world, const Light& light,
-              const FrameSettings& settings, uint64_t pixel_count, uint32_t refused_side_texels, const Box& scene_bounds, float nearest_m);
-    // The plants of the tiles listed last.
-    void see(const SceneGeometry& geometry);
-
-    bool any() const { return side_texels_ > 0; }
-    // There is no room for the map: shadows are off for the frame.
-    void drop() { side_texels_ = 0; }
-    uint32_t side_texels() const { return side_texels_; }
-    const ShadowView& view() const { return view_; }
-    // What of a streamed world is missing.
-    std::span<const TileWish> wishes() const {
-        return any() ? tiles_.wishes() : std::span<const TileWish>();
-    }
-
-    uint32_t plant_count() const;  // that throw shadows, without those that clouds stand for
-    // Of the work list; 0 without shadows.
-    size_t part_count() const { return any() ? tiles_.runs().size() + 2 : 0; }
-    void draw(const SceneGeometry& geometry, const FrameSettings& settings, uint32_t rest_index, WorkList& work,
+              std::span<const Ground> grounds, const Frustum& frustum, dvec3 camera_world,
+              const FrameSettings& settings);
+    void see(const SceneGeometry& geometry) { plants_.see(tiles_, geometry, frustum_, nullptr, spread_px_); }
+    // Parts [first_part, first_part + part_count()) of the work list. Ground that is nowhere steeper than least_slope throws none.
+    size_t part_count() const { return tiles_.runs().size() + 2; }
+    void draw(const SceneGeometry& geometry, uint32_t rest_index, float least_slope, WorkList& work,
               size_t first_part);
+    // What of a streamed world was missing when it was listed.
+    std::span<const TileWish> wishes() const { return tiles_.wishes(); }
+    bool is_incomplete() const { return tiles_.stand_in_count > 0; }
+    uint32_t plant_count() const;  // without those that clouds stand for
 
   private:
-    vec3 to_sun_{0.0f, 1.0f, 0.0f};
     Frustum frustum_{};
+    FrameSettings settings_;
     TileList tiles_;
     GroundList grounds_;
     GroundExpander ground_expander_;
     FramePlants plants_;
-    ShadowView view_{};
-    uint32_t side_texels_ = 0;
     float spread_px_ = 0.0f;  // of primitives, beside their geometry
+};
+
+class FrameCasters {
+  public:
+    struct View {
+        Frustum frustum;
+        dvec3 camera_world, origin_world;
+        vec3 motion_m;       // where the viewer will be soon, from where it is
+        uint64_t pixel_count;
+        Box scene_bounds;    // all that there is, relative to the camera
+        float nearest_m;     // from the viewer to what is seen, about
+        // A map as large as one that found no room is not drawn.
+        uint32_t refused_side_texels;
+    };
+    // Which maps are to be drawn, and which tiles into them. Without a sun, or with shadows off, there are none. settings: of the
+    // frame as it is drawn. May be called again before the frame is drawn.
+    void list(const TileList::Tiles& tiles, const TileList::Plants& plants, const SceneGeometry& geometry,
+              std::span<const Ground> grounds, const View& view, const Light& light,
+              const FrameSettings& settings);
+    // The plants of the tiles listed last.
+    void see(const SceneGeometry& geometry);
+
+    bool any() const { return side_texels_ > 0; }
+    // There is no room for the maps: shadows are off for the frame.
+    void drop();
+    uint32_t side_texels() const { return side_texels_; }
+    uint32_t map_count() const { return map_count_; }
+    uint32_t drawn_map_count() const { return uint32_t(drawn_.size()); }
+    ShadowSettings maps() const;
+    // What of a streamed world is missing.
+    void add_wishes(std::vector<TileWish>& wishes) const;
+
+    uint32_t plant_count() const;  // of the maps that are drawn; without those that clouds stand for
+    // Of the work list, a map each.
+    std::span<const size_t> part_counts() const { return part_counts_; }
+    void draw(const SceneGeometry& geometry, uint32_t rest_index, WorkList& work, size_t first_part);
+
+    // The frame has been set: maps that stay are what they were to be, unless some of it did not fit into the work list.
+    void commit(bool is_whole);
+    // What is seen is not what it was: maps that stay are drawn anew.
+    void forget() { clipmap_.forget(); }
+    // More of a streamed world has been read.
+    void note_arrivals() { clipmap_.note_arrivals(); }
+    // Some plants have come, gone or moved.
+    void note_changes() { clipmap_.note_changes(); }
+
+  private:
+    void list_warped(const TileList::Tiles& tiles, const TileList::Plants& plants,
+                     const SceneGeometry& geometry, std::span<const Ground> grounds, const View& view,
+                     const FrameSettings& settings, float far_m);
+    void list_nested(const TileList::Tiles& tiles, const TileList::Plants& plants,
+                     const SceneGeometry& geometry, std::span<const Ground> grounds, const View& view,
+                     const FrameSettings& settings, float far_m);
+
+    vec3 to_sun_{0.0f, 1.0f, 0.0f};
+    float far_m_ = 0.0f;
+    uint32_t side_texels_ = 0, map_count_ = 1;
+    bool is_nested_ = false;
+    Clipmap clipmap_;
+    std::array<MapCasters, k_most_work_maps> casters_;  // by map
+    std::vector<ShadowMapDraw> drawn_;
+    std::vector<ShadowView> seen_;
+    std::vector<size_t> part_counts_;
 };
 
 }  // namespace coppice

@@ -15,6 +15,9 @@ struct Light {
     vec4 shadow_x, shadow_y, shadow_z, shadow_w;
     vec4 sun_across, sun_along;  // unit, at right angles to the sun and each other; w: how shadow_z grows towards the sun; texels a side
     vec4 shadow_growth_xy, shadow_growth_wz;  // how columns and rows, w and depths, all times w, grow along the two
+    // Of nested maps (shadow/clipmap.h): how far the first is looked up and how large its texels are, m, its place, and how many
+    // follow it.
+    vec4 nested;
 };
 
 // Of the sun's light in the mean, where no shadow map says: a sunbeam crosses the crown once more than the mean of the sky does.

@@ -20,7 +20,7 @@ layout(push_constant) uniform Frame {
     vec4 row_x, row_y, row_w;
     // Of the shadow map only.
     vec4 row_z;
-    vec4 to_sun;
+    vec4 to_sun;             // w: what throws shadows is as coarse as from so far away at least
     vec4 viewer;             // the view's axis; w: cosine of the picture's corners
     vec2 size_px;            // width and height of the image
     float near_w;            // what has less is cut off
@@ -158,10 +158,8 @@ vec2 map_scale(SunAxes axes, vec3 place_on_map) {
 }
 
 // What a pixel of the picture is at that place (cull/frustum.h, off_axis_stretch).
-float metres_a_pixel(Transform t, vec3 position_plant) {
-    vec3 p = t.place + turn_direction(t, position_plant);
-    float distance_m = length(p);
-    float cosine = max(dot(frame.viewer.xyz, p) / max(distance_m, 1.0e-30), frame.viewer.w);
+float metres_a_pixel(vec3 from_viewer, float distance_m) {
+    float cosine = max(dot(frame.viewer.xyz, from_viewer) / max(distance_m, 1.0e-30), frame.viewer.w);
     return frame.metres_a_pixel * distance_m * cosine * sqrt(cosine);
 }
 

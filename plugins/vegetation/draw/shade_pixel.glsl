@@ -17,7 +17,6 @@ layout(push_constant) uniform Frame {
 } frame;
 
 layout(binding = 0) readonly buffer Visibility { uint64_t visibility[]; };
-layout(binding = 1) readonly buffer Lights { Light light; };
 layout(binding = 2) buffer Radiance { float radiance[]; };  // three a pixel: the mean of a view at rest
 
 const uint k_view_kinds = 1u, k_view_coverage = 2u;
@@ -37,7 +36,8 @@ vec3 shade_pixel(Light sun, uint column, uint row) {
     vec3 albedo = decode_color_linear(surface);
     float openness = decode_openness(surface);
     float sunlit = stand_in_sun(openness);
-    if (k_shadows && covered) sunlit = sunlit_share(sun, direction * distance_m, distance_m / ray_length, normal, sunlit);
+    if (k_shadow_maps > 0u && covered)
+        sunlit = sunlit_share(sun, direction * distance_m, distance_m, distance_m / ray_length, normal, sunlit);
     vec3 lit = shade(sun, normal, -direction, albedo, openness, sunlit, (surface & k_leaf_bit) != 0u);
     vec3 shown = covered ? apply_haze(sun, lit, direction, distance_m) : sky_radiance(sun, direction);
     if (frame.view == k_view_kinds) shown = covered ? albedo * (0.3 + 0.7 * abs(normal.y)) : shown;

@@ -24,9 +24,9 @@ void splat_shadow(Transform t, Entry entry, SunAxes axes, vec3 sun_plant, uvec4 
     float side_m = entry.size_px * t.scale;
     if (k_blend && entry.density_limit > 0.0) {
         vec3 from_viewer = t.place + turn_direction(t, position);
-        float distance_m = length(from_viewer), along_m = max(dot(frame.viewer.xyz, from_viewer), frame.viewer.w * distance_m);
+        float distance_m = max(length(from_viewer), frame.to_sun.w), along_m = max(dot(frame.viewer.xyz, from_viewer), frame.viewer.w * distance_m);
         if (uintBitsToFloat(owner) * along_m * along_m * along_m > entry.density_limit * distance_m) return;
-        side_m = entry.size_px * metres_a_pixel(t, position) * exp2((float(owner & 0xffu) - 128.0) / 32.0) *
+        side_m = entry.size_px * metres_a_pixel(from_viewer, distance_m) * exp2((float(owner & 0xffu) - 128.0) / 32.0) *
                  sqrt(seen_gain(entry.owner_min, from_viewer.y / max(distance_m, 1.0e-30)));
     }
     vec3 normal = decode_normal(vertex.w);

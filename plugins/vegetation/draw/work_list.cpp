@@ -175,11 +175,13 @@ void WorkPart::add(const PartGeometry& geometry, const PartRule& rule, const Par
     }
 }
 
-void WorkList::begin(size_t part_count, size_t caster_part_count) {
-    if (parts_.size() < part_count) parts_.resize(part_count);
-    part_count_ = part_count;
-    caster_part_count_ = caster_part_count;
-    for (size_t i = 0; i < part_count; ++i) parts_[i].clear(i + caster_part_count >= part_count);
+void WorkList::begin(size_t picture_part_count, std::span<const size_t> map_part_counts) {
+    assert(map_part_counts.size() <= k_most_work_maps);
+    part_count_ = picture_part_count_ = picture_part_count;
+    map_count_ = map_part_counts.size();
+    for (size_t map = 0; map < map_count_; ++map) map_ends_[map] = part_count_ += map_part_counts[map];
+    if (parts_.size() < part_count_) parts_.resize(part_count_);
+    for (size_t i = 0; i < part_count_; ++i) parts_[i].clear(i >= picture_part_count_);
 }
 
 PrimitiveCounts WorkList::count(size_t first, size_t end) const {
@@ -231,9 +233,9 @@ WorkList::Layout WorkList::gather(std::span<WorkInstance> instances, std::span<W
         layout.instance_count += place.instance_count;
     }
     const uint32_t capacity = uint32_t(std::min<size_t>(entries.size(), UINT32_MAX));
-    const size_t first_caster = part_count_ - caster_part_count_;
-    uint32_t next = place_entries(0, first_caster, 0, capacity, layout.picture);
-    next = place_entries(first_caster, part_count_, next, capacity, layout.casters);
+    uint32_t next = place_entries(0, picture_part_count_, 0, capacity, layout.picture);
+    for (size_t map = 0, first = picture_part_count_; map < map_count_; first = map_ends_[map++])
+        next = place_entries(first, map_ends_[map], next, capacity, layout.maps[map]);
     layout.entry_count = std::min(next, capacity);
     layout.dropped_entries = size().entries - layout.entry_count;
 

@@ -149,13 +149,16 @@ struct WorkRanges {
     }
 };
 
+// A list has what one picture draws, and what so many shadow maps do.
+inline constexpr size_t k_most_work_maps = 12;
+
 class WorkList {
   public:
-    // Parts for that many jobs, cleared. The last caster_part_count of them are drawn into the shadow map, the others into the
-    // picture.
-    void begin(size_t part_count, size_t caster_part_count = 0);
+    // Parts for so many jobs, cleared: the picture's, behind them those of each shadow map.
+    void begin(size_t picture_part_count, std::span<const size_t> map_part_counts = {});
     WorkPart& part(size_t index) { return parts_[index]; }
 
+    size_t part_count() const { return part_count_; }
     // Of plants, in the parts [first, end).
     PrimitiveCounts count(size_t first, size_t end) const;
 
@@ -166,7 +169,8 @@ class WorkList {
     Size size() const;
 
     struct Layout {
-        WorkRanges picture, casters;
+        WorkRanges picture;
+        std::array<WorkRanges, k_most_work_maps> maps;
         uint32_t instance_count = 0, entry_count = 0;
         uint32_t dropped_entries = 0;  // beyond the capacity of the buffers
     };
@@ -183,7 +187,8 @@ class WorkList {
     uint32_t place_entries(size_t first, size_t end, uint32_t next, uint32_t capacity, WorkRanges& ranges);
 
     std::vector<WorkPart> parts_;
-    size_t part_count_ = 0, caster_part_count_ = 0;
+    size_t part_count_ = 0, picture_part_count_ = 0, map_count_ = 0;
+    std::array<size_t, k_most_work_maps> map_ends_{};  // one past each map's last part
     std::vector<Place> places_;
 };
 

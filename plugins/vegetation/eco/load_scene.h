@@ -1,5 +1,6 @@
 // Reads an *.eco.json scene: plants used, where they stand, terrain, sun, flight. The format is in README.md.
 #pragma once
+#include <functional>
 #include <string>
 #include "plugins/modeller/modeller.h"
 #include "plugins/vegetation/eco/scene.h"
@@ -10,6 +11,8 @@ struct SceneLoadSettings {
     const TerrainInterface* terrain = nullptr;    // null: a scene with a terrain is refused
     const ModellerInterface* modeller = nullptr;  // null: a scene with a population to quantise is refused
     std::string cache_dir;                        // of measured populations; empty: measured each time
+    // Of scenes' files and their packed plants; for who has them in memory. Empty: read from the disk.
+    std::function<Result<std::string>(const std::string& path)> read_file;
 };
 
 // Deterministic: same files, same scene, on any number of threads. Tiles' bounds hold only the plants' feet

@@ -5,6 +5,7 @@
 #include "plugins/vegetation/eco/camera_path.h"
 #include "plugins/vegetation/eco/ground_height.h"
 #include "plugins/vegetation/eco/measure_population.h"
+#include "plugins/vegetation/eco/placed_plants.h"
 #include "plugins/vegetation/eco/quantise.h"
 #include "plugins/vegetation/eco/read_light.h"
 #include "plugins/vegetation/eco/read_placements_csv.h"
@@ -13,6 +14,7 @@
 #include "plugins/vegetation/eco/scene_file.h"
 #include "runtime/core/file.h"
 #include "runtime/core/hash.h"
+#include "runtime/core/jobs.h"
 #include "runtime/core/log.h"
 #include "runtime/core/random.h"
 
@@ -67,6 +69,7 @@ class SceneReader {
             COPPICE_TRY(scene_.camera_path,
                         read_camera_path(root_, folder_, height_of(scene_.terrain.get())));
         }
+        scene_.kinds = std::move(names_.kinds);
         return std::move(file_);
     }
 
@@ -172,10 +175,11 @@ class SceneReader {
     }
 
     Status read_placement(JsonObject& entry) {
-        size_t kind = entry.one_of({"plant", "csv", "scatter"});
+        size_t kind = entry.one_of({"plant", "csv", "scatter", "packed"});
         COPPICE_CHECK(document_.status());
         if (kind == 0) return read_single(entry);
         if (kind == 1) return read_csv(entry);
+        if (kind == 3) return read_packed(entry);
         JsonObject object = entry.object("scatter");
         entry.close();
         ScatterSettings settings = read_scatter(object, names_, scene_.terrain.get());
@@ -236,6 +240,28 @@ class SceneReader {
         return add(std::move(plants), entry.place_of("csv"));
     }
 
+    // On the ground, wherever that has come to lie since they were placed.
+    Status read_packed(JsonObject& entry) {
+        const std::string path = resolve(entry.text("packed"));
+        entry.close();
+        COPPICE_CHECK(document_.status());
+        COPPICE_TRY(const std::string bytes, read_scene_bytes(path, settings_));
+        COPPICE_TRY(const PlacedPlants placed, read_placed(bytes, path));
+        std::vector<const PlantKind*> kinds;
+        for (const std::string& name : placed.kinds) kinds.push_back(names_.find_kind(entry, "packed", name));
+        COPPICE_CHECK(document_.status());
+        std::vector<Placement> plants(placed.plants.size());
+        const Terrain* terrain = scene_.terrain.get();
+        parallel_for(plants.size(), 4096, [&](size_t first, size_t last) {
+            for (size_t i = first; i < last; ++i) {
+                const dvec2 at = ground_place(placed.plants[i]);
+                plants[i] = unpack_placed(placed.plants[i], *kinds[placed.plants[i].kind],
+                                          ground_height(terrain, at.x, at.y));
+            }
+        });
+        return add(std::move(plants), entry.place_of("packed"));
+    }
+
     JsonDocument& document_;
     JsonObject root_;
     const SceneLoadSettings& settings_;
@@ -250,9 +276,13 @@ class SceneReader {
 
 }  // namespace
 
+Result<std::string> read_scene_bytes(const std::string& path, const SceneLoadSettings& settings) {
+    return settings.read_file ? settings.read_file(path) : read_text_file(path, k_scene_file_limit_bytes);
+}
+
 Result<SceneFile> read_scene_file(const std::string& path, const SceneLoadSettings& settings,
                                   SceneRole role) {
-    COPPICE_TRY(std::string text, read_text_file(path));
+    COPPICE_TRY(std::string text, read_scene_bytes(path, settings));
     COPPICE_TRY(JsonDocument document, JsonDocument::parse(text, path));
     return SceneReader(document, path, settings, role).read();
 }

@@ -1,10 +1,11 @@
 // A scene in memory: what an *.eco.json file says, with its placements cut into square tiles.
 #pragma once
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 #include "plugins/terrain/terrain.h"
-#include "plugins/vegetation/components.h"
+#include "plugins/vegetation/eco/place.h"
 #include "runtime/core/result.h"
 
 namespace coppice {
@@ -30,6 +31,7 @@ struct CameraKey {
 struct Scene {
     std::string name, path;
     std::vector<SceneModel> models;
+    std::map<std::string, PlantKind> kinds;  // what the file itself may plant, by name; for who places more
     std::vector<SceneTile> tiles;
     std::vector<PlantPosition> positions;
     std::vector<PlantTurn> turns;

@@ -43,4 +43,8 @@ enum class SceneRole { root, referenced };
 // root's ground is known, and so its scatters need a region. Errors: load_scene's.
 Result<SceneFile> read_scene_file(const std::string& path, const SceneLoadSettings& settings, SceneRole role);
 
+// A scene's file, or one of its packed plants: from the disk, or from who has a newer one.
+inline constexpr size_t k_scene_file_limit_bytes = size_t(1) << 29;
+Result<std::string> read_scene_bytes(const std::string& path, const SceneLoadSettings& settings);
+
 }  // namespace coppice

@@ -14,16 +14,17 @@ enum class ProjectionMode : uint8_t {
 // What stands for leaves between all their triangles and points: fewer and larger leaves (plant/leaf_bands.h).
 enum class FoliageMode : uint8_t {
     automatic,  // where they were measured to be nearer to the truth than points in the same time (lod/choose_part.h)
-    points,     // nowhere
-    leaves,     // wherever a part has them
+    points,  // nowhere
+    leaves,  // wherever a part has them
 };
 
-// How the shadow map is fitted to what is seen (shadow/shadow_view.h).
+// How shadow maps are fitted to what is seen (shadow/shadow_view.h).
 enum class ShadowKind : uint8_t {
     none,         // no map is drawn: the sun reaches leaves as they are open to the sky
     uniform,      // as fine far from the viewer as near
     perspective,  // in the viewer's space after projection (Stamminger and Drettakis 2002)
     light_space,  // warped along the view across the sun's rays (Wimmer et al. 2004)
+    clipmap,      // nested maps around the viewer that stay until the viewer or the sun has moved on (shadow/clipmap.h)
 };
 
 enum class RepresentationView : uint8_t {
@@ -52,8 +53,8 @@ struct FrameSettings {
     bool level_of_detail = true;  // false: every triangle of everything in view
     bool blend = true;            // false: switch from points to triangles at once
     bool occlusion = true;  // false: what is behind the ground is drawn as well; the picture is the same
-    ShadowKind shadows = ShadowKind::light_space;
-    uint32_t shadow_side_texels = 0;    // of the square map; 0: about as many texels as the picture has pixels
+    ShadowKind shadows = ShadowKind::clipmap;
+    uint32_t shadow_side_texels = 0;    // of each square map; 0: as the picture's pixels ask for
     float shadow_distance_m = 1000.0f;  // along the view; what is farther is lit as without shadows
     RepresentationView view = RepresentationView::lit;
     // Each pixel shows its sample and its neighbours' under a tent of this radius, [1, 2] px; 1: its own alone. Leaves
@@ -63,7 +64,8 @@ struct FrameSettings {
     // of the pixel; then nothing is drawn until something moves. 0: every frame stands alone.
     uint32_t accumulate_limit = 0;
     // Of a world that is read while it is flown over: the frame waits until all it needs, and its memory has room for, is
-    // there. For pictures that must not depend on timing; else what is above stands in for what is missing.
+    // there. For pictures that must not depend on timing; else what is above stands in for what is missing. Not where the
+    // host keeps its queue: waiting needs one.
     bool wait_for_tiles = false;
     bool operator==(const FrameSettings&) const = default;
 };

@@ -1,6 +1,6 @@
 // What a drawn pixel knows of the surface it shows, in 32 bits, so that lighting needs no second fetch
 // (DESIGN 4):
-//   bits  0-11  unit normal, octahedral, 6 + 6 bits        (error of direction under 2.6 degrees)
+//   bits  0-11  unit normal, octahedral, 6 + 6 bits        (error of direction under 3.9 degrees)
 //   bits 12-27  colour, 5 + 6 + 5 bits, square-root coded  (linear = (q / max)^2)
 //   bits 28-30  openness, 8 steps: share of the sky seen from here past the plant's own parts
 //   bit  31     1: leaf, lit from both sides and letting light through; 0: opaque

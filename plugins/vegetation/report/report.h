@@ -24,8 +24,9 @@ struct FrameReport {
     uint64_t vertices = 0;         // points + 2 lines + 3 triangles + 4 leaves, of plants
     uint64_t full_triangles = 0;   // of the visible plants, had all been drawn
     uint64_t scene_triangles = 0;  // of the whole scene
-    // Of the shadow map: texels a side, 0: none was drawn; plants that throw shadows, and what was drawn of them and of clouds.
-    uint32_t shadow_side_texels = 0, shadow_plants = 0;
+    // Of shadow maps: texels a side, 0: there are none; how many were drawn; the plants in those, and what was drawn of them and of
+    // clouds.
+    uint32_t shadow_side_texels = 0, shadow_maps = 0, shadow_plants = 0;
     uint64_t shadow_triangles = 0, shadow_lines = 0, shadow_points = 0, shadow_leaves = 0;
     uint64_t work_entries = 0;     // of the work list
     uint64_t dropped_entries = 0;  // did not fit into the work list; its capacity grows for the next frame

@@ -9,6 +9,7 @@ ShadowView fit_shadow(ShadowKind kind, const ShadowScene& scene) {
         case ShadowKind::light_space:
             return fit_shadow_light_space(scene);
         case ShadowKind::none:
+        case ShadowKind::clipmap:
         case ShadowKind::uniform:
             break;
     }

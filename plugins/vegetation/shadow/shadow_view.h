@@ -42,6 +42,6 @@ ShadowView fit_shadow_perspective(const ShadowScene& scene);
 // Wimmer et al. 2004, ERRATA 6: w grows along the view in the light's plane; becomes the uniform map over a band of
 // angles between light and view.
 ShadowView fit_shadow_light_space(const ShadowScene& scene);
-ShadowView fit_shadow(ShadowKind kind, const ShadowScene& scene);  // none: as uniform
+ShadowView fit_shadow(ShadowKind kind, const ShadowScene& scene);  // none and nested ones: as uniform
 
 }  // namespace coppice

@@ -1,0 +1,252 @@
+#include "editor/session/session.h"
+
+#include <cassert>
+#include <filesystem>
+#include <map>
+#include "plugins/vegetation/eco/scene_file.h"
+#include "runtime/core/file.h"
+#include "runtime/core/hash.h"
+
+namespace coppice {
+namespace {
+
+// Of a file, or nothing.
+std::optional<std::string> bytes_of(const std::string& path) {
+    auto bytes = read_text_file(path, k_scene_file_limit_bytes);
+    return bytes ? std::optional(std::move(*bytes)) : std::nullopt;
+}
+
+void remove_file(const std::string& path) {
+    std::error_code ignored;
+    std::filesystem::remove(path, ignored);
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Session>> Session::open(const std::string& path, const Settings& settings) {
+    std::error_code ignored;
+    const bool exists = std::filesystem::exists(path, ignored);
+    Result<Document> document = exists ? Document::open(path) : Document::make(path);
+    if (!document) return fail(std::move(document.error()));
+    std::unique_ptr<Session> session(new Session(std::move(*document)));
+    session->settings_ = settings;
+    session->warnings_ = session->document_.faults();
+    const std::string journal = journal_path(session->document_.root_path());
+    if (settings.journal && std::filesystem::exists(journal, ignored)) {
+        COPPICE_CHECK(Journal::check_free(journal));
+        auto content = Journal::read(journal);
+        if (!content) {
+            session->warnings_.push_back(content.error());
+        } else {
+            session->recoverable_ = std::move(content->edits);
+            session->recoverable_base_ = std::move(content->base);
+        }
+    }
+    session->load_terrain();
+    return session;
+}
+
+Session::~Session() {
+    if (has_journal_ && saved()) drop_journal();
+}
+
+// Brings back, from beside them, the files that the edits were made of.
+Status Session::restore_base(const JournalContent& journal) {
+    std::map<std::string, std::string> wanted;
+    bool changed = false;
+    for (const JournalBase& file : journal.base) {
+        if (file.hash == k_no_file) {
+            std::error_code ignored;
+            if (!std::filesystem::exists(file.path, ignored)) continue;
+            std::filesystem::rename(file.path, file.path + ".bak", ignored);
+            changed = true;
+            continue;
+        }
+        bool found = false;
+        for (const std::string& path : {file.path, file.path + ".bak"}) {
+            auto bytes = bytes_of(path);
+            if (!bytes || hash_text(*bytes) != file.hash) continue;
+            if (path != file.path) wanted[file.path] = std::move(*bytes);
+            found = true;
+            break;
+        }
+        if (!found)
+            return fail(ErrorId::file_corrupt, file.path, "", "was changed since the work that was not saved",
+                        "the work is kept in the file that ends with .journal.old");
+    }
+    if (wanted.empty() && !changed) return {};
+    // The newer files go aside as they were the older ones' backups until now.
+    for (const auto& [path, bytes] : wanted) {
+        const auto newer = bytes_of(path);
+        COPPICE_CHECK(write_text_file(path, bytes));
+        if (newer) COPPICE_CHECK(write_text_file(path + ".bak", *newer));
+    }
+    std::error_code ignored;
+    const std::string root = document_.root_path();
+    if (!std::filesystem::exists(root, ignored)) {
+        document_ = Document::make(root);
+    } else {
+        COPPICE_TRY(document_, Document::open(root));
+    }
+    return {};
+}
+
+Result<size_t> Session::recover() {
+    const std::string path = journal_path(document_.root_path());
+    if (Status restored = restore_base({recoverable_base_, {}, 0}); !restored) {
+        recoverable_.clear();
+        std::error_code ignored;
+        std::filesystem::rename(path, path + ".old", ignored);
+        return fail(std::move(restored.error()));
+    }
+    const std::vector<std::string> written = std::exchange(recoverable_, {});
+    std::vector<Edit> edits;
+    for (const std::string& bytes : written) {
+        auto edit = read_edit(bytes, path, [&](const std::string& name) { return document_.kind_of(name); });
+        if (!edit || !document_.apply(*edit)) break;
+        edits.push_back(std::move(*edit));
+    }
+    // The journal is written again, so that nothing is lost should this run be killed as well.
+    for (Edit& edit : edits) {
+        write_journal(edit);
+        remember(std::move(edit));
+    }
+    ++text_version_;
+    load_terrain();
+    return edits.size();
+}
+
+Status Session::discard_recovery() {
+    recoverable_.clear();
+    remove_file(journal_path(document_.root_path()));
+    return {};
+}
+
+void Session::load_terrain() {
+    const auto& json = document_.root().text->json;
+    const auto terrain = json.find("terrain");
+    const std::string text = terrain == json.end() ? "" : terrain->dump();
+    if (text == terrain_text_) return;
+    terrain_text_ = text;
+    terrain_.reset();
+    if (text.empty() || !settings_.terrain) return;
+    const std::string& path = document_.root_path();
+    auto loaded = settings_.terrain->load(text, std::filesystem::path(path).parent_path().string(), path);
+    if (loaded)
+        terrain_ = std::move(*loaded);
+    else
+        warnings_.push_back(loaded.error());
+}
+
+void Session::apply(const Edit& edit) {
+    [[maybe_unused]] const bool fits = document_.apply(edit);
+    assert(fits && "an edit of another document");
+    for (const FileEdit& file : edit.files) {
+        if (file.before == file.after && file.path == document_.root_path()) continue;
+        ++text_version_;
+        load_terrain();
+    }
+}
+
+void Session::remember(Edit edit) {
+    step_names_.resize(history_.done_count());
+    step_names_.push_back(++last_step_name_);
+    history_.push(std::move(edit));
+}
+
+// What could not be written waits, and goes first when there is room again.
+void Session::write_journal(const Edit& edit) {
+    if (!settings_.journal) return;
+    unwritten_.push_back(write_edit(edit, document_.kinds()));
+    if (!has_journal_) {
+        auto made = Journal::create(journal_path(document_.root_path()), journal_base(document_));
+        if (!made) return warnings_.push_back(made.error());
+        journal_ = std::move(*made);
+        has_journal_ = true;
+    }
+    while (!unwritten_.empty()) {
+        if (Status written = journal_.append(unwritten_.front()); !written)
+            return warnings_.push_back(written.error());
+        unwritten_.pop_front();
+    }
+}
+
+Result<const Edit*> Session::perform(const std::string& name, const nlohmann::json& arguments,
+                                     const std::string& source, const std::string& place) {
+    COPPICE_TRY(Edit edit, make_edit(context(), name, arguments, source, place));
+    if (edit.empty()) return nullptr;
+    perform(std::move(edit));
+    return &history_.edits()[history_.done_count() - 1];
+}
+
+void Session::perform(Edit edit) {
+    assert(recoverable_.empty() && open_edit_.empty());
+    if (edit.empty()) return;
+    apply(edit);
+    write_journal(edit);
+    remember(std::move(edit));
+}
+
+void Session::extend(Edit piece) {
+    if (piece.empty()) return;
+    apply(piece);
+    if (open_edit_.files.empty()) {
+        open_edit_ = std::move(piece);
+        return;
+    }
+    // A stroke has one file.
+    assert(piece.files.size() == 1 && open_edit_.files.size() == 1 &&
+           piece.files[0].path == open_edit_.files[0].path);
+    FileEdit& file = open_edit_.files[0];
+    const FileEdit& more = piece.files[0];
+    file.after = more.after;
+    file.removed.insert(file.removed.end(), more.removed.begin(), more.removed.end());
+    file.added.insert(file.added.end(), more.added.begin(), more.added.end());
+}
+
+void Session::finish(const std::string& name) {
+    Edit edit = std::exchange(open_edit_, {});
+    if (edit.empty()) return;
+    edit.name = name;
+    write_journal(edit);
+    remember(std::move(edit));
+}
+
+std::string Session::undo() {
+    const Edit* edit = history_.next_undo();
+    if (!edit || !open_edit_.empty()) return {};
+    Edit back = inverse(*edit);
+    const std::string name = edit->name;
+    back.name = "undo " + name;
+    apply(back);
+    write_journal(back);
+    history_.undone();
+    return name;
+}
+
+std::string Session::redo() {
+    const Edit* edit = history_.next_redo();
+    if (!edit || !open_edit_.empty()) return {};
+    apply(*edit);
+    write_journal(*edit);
+    history_.redone();
+    return edit->name;
+}
+
+Status Session::save() {
+    COPPICE_CHECK(document_.save());
+    saved_step_name_ = step_name();
+    // What follows is of the files as they are now.
+    drop_journal();
+    return {};
+}
+
+void Session::drop_journal() {
+    unwritten_.clear();
+    if (!has_journal_) return;
+    journal_ = {};
+    has_journal_ = false;
+    remove_file(journal_path(document_.root_path()));
+}
+
+}  // namespace coppice

@@ -1,0 +1,393 @@
+// The window's life: events, one frame after the other, closing. Its parts: tools.h, panels.h, overlay.h.
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <filesystem>
+#include <imgui.h>
+#include <backends/imgui_impl_glfw.h>
+#include <fmt/format.h>
+#include "editor/view/ground_pick.h"
+#include "plugins/vegetation/eco/ground_height.h"
+#include "editor/window/overlay.h"
+#include "editor/window/panels.h"
+#include "editor/window/window_interface.h"
+#include "runtime/plugin/plugin.h"
+#include "runtime/window/swapchain.h"
+#include "runtime/window/window.h"
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+namespace coppice {
+namespace {
+
+constexpr uint32_t k_accumulate_limit = 16;
+constexpr float k_walk_m_per_s = 6.0f, k_fast_factor = 6.0f, k_turn_rad_per_px = 0.004f,
+                k_pitch_limit_rad = 1.55f;
+constexpr double k_idle_wait_s = 0.1;
+constexpr int k_awake_frames = 4;  // after the last event: panels settle over some frames
+
+double now_ms() {
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch())
+        .count();
+}
+
+class EditorWindow {
+  public:
+    EditorWindow(Registry& registry, Session& session, const EditorWindowSettings& settings)
+        : registry_(registry), session_(session), settings_(settings) {}
+
+    ~EditorWindow() {
+        overlay_.reset();
+        swapchain_ = {};
+        view_.reset();
+        if (imgui_) {
+            ImGui_ImplGlfw_Shutdown();
+            ImGui::DestroyContext();
+        }
+        if (window_) glfwDestroyWindow(window_);
+    }
+
+    Status start() {
+        glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
+        window_ = glfwCreateWindow(int(settings_.width), int(settings_.height), "Coppice", nullptr, nullptr);
+        if (!window_)
+            return fail(ErrorId::device_missing, "", "glfwCreateWindow", "no window",
+                        "run a script: --script FILE");
+        float display_scale = 1.0f, ignored = 1.0f;
+        glfwGetWindowContentScale(window_, &display_scale, &ignored);
+        state_.scale = std::clamp(settings_.scale > 0.0f ? settings_.scale : display_scale, 0.5f, 4.0f);
+        state_.dark = !settings_.light;
+        state_.recovering = session_.recoverable_count() > 0;
+        state_.warnings = session_.take_warnings();
+
+        EditorViewSettings view;
+        int width = 0, height = 0;
+        glfwGetFramebufferSize(window_, &width, &height);
+        view.width = uint32_t(std::max(width, 1));
+        view.height = uint32_t(std::max(height, 1));
+        view.cache_dir = settings_.cache_dir;
+        view.device = settings_.device;
+        view.validation = settings_.validation;
+        uint32_t count = 0;
+        const char** names = glfwGetRequiredInstanceExtensions(&count);
+        view.present_extensions.assign(names, names + (names ? count : 0));
+        COPPICE_TRY(view_, EditorView::create(registry_, session_, view));
+        VkSurfaceKHR surface = VK_NULL_HANDLE;
+        if (glfwCreateWindowSurface(view_->device->instance, window_, nullptr, &surface) != VK_SUCCESS)
+            return fail(ErrorId::device_missing, "", "glfwCreateWindowSurface",
+                        view_->device->name + " cannot draw into this window", "run a script: --script FILE");
+        COPPICE_TRY(swapchain_, Swapchain::create(*view_->device, surface));
+
+        ImGui::CreateContext();
+        imgui_ = true;
+        ImGui::GetIO().IniFilename = nullptr;  // panels have their places
+        ImGui_ImplGlfw_InitForVulkan(window_, true);
+        glfwSetWindowUserPointer(window_, this);
+        glfwSetFramebufferSizeCallback(window_, [](GLFWwindow* window, int, int) {
+            static_cast<EditorWindow*>(glfwGetWindowUserPointer(window))->swapchain_.invalidate();
+        });
+        load_fonts(state_.scale);
+        apply_theme(state_.dark, state_.scale);
+        COPPICE_TRY(overlay_, Overlay::create(*view_->device, view_->width, view_->height));
+
+        camera_ = camera_at(view_->camera_path(), 0.0);
+        const auto& json = session_.document().root().text->json;
+        if (const auto plants = json.find("plants");
+            plants != json.end() && plants->is_object() && !plants->empty()) {
+            tools_.active = plants->begin().key();
+            tools_.brush.kinds = {tools_.active};
+        }
+        state_.shadows = !view_->device->limits.is_cpu;
+        settings_of_frame_.sample_distance_px = view_->sample_distance_px();
+        settings_of_frame_.accumulate_limit = k_accumulate_limit;
+        settings_of_frame_.time_budget_ms = state_.target_ms;
+        return {};
+    }
+
+    Status run() {
+        double last_ms = now_ms();
+        int awake = k_awake_frames;
+        while (!state_.closed) {
+            if (awake > 0)
+                glfwPollEvents();
+            else
+                glfwWaitEventsTimeout(k_idle_wait_s);
+            if (glfwWindowShouldClose(window_)) ask_to_close();
+            int width = 0, height = 0;
+            glfwGetFramebufferSize(window_, &width, &height);
+            if (glfwGetWindowAttrib(window_, GLFW_ICONIFIED) || width < 1 || height < 1) {
+                tools_.stop(session_);
+                glfwWaitEventsTimeout(k_idle_wait_s);
+                last_ms = now_ms();
+                continue;
+            }
+            COPPICE_CHECK(fit(uint32_t(width), uint32_t(height)));
+            const double begin_ms = now_ms();
+            const float step_s = float(std::min(begin_ms - last_ms, 250.0) * 1e-3);
+            last_ms = begin_ms;
+            COPPICE_CHECK(frame(step_s));
+            const double frame_ms = now_ms() - begin_ms;
+            figures_.frame_ms = figures_.frame_ms > 0.0 ? 0.9 * figures_.frame_ms + 0.1 * frame_ms : frame_ms;
+            awake = is_busy() ? k_awake_frames : awake - 1;
+        }
+        return {};
+    }
+
+  private:
+    // Whether the next frame would differ without an event.
+    bool is_busy() const {
+        const ImGuiIO& io = ImGui::GetIO();
+        return moved_ || io.MouseDown[0] || io.MouseDown[1] || io.WantTextInput ||
+               view_->vegetation->report().rested_frames < k_accumulate_limit;
+    }
+
+    Status fit(uint32_t width, uint32_t height) {
+        if (width == view_->width && height == view_->height) return {};
+        COPPICE_CHECK(view_->resize(width, height));
+        return overlay_->resize(width, height);
+    }
+
+    void ask_to_close() {
+        tools_.stop(session_);
+        glfwSetWindowShouldClose(window_, GLFW_FALSE);
+        if (session_.saved())
+            state_.closed = true;
+        else
+            state_.closing = true;
+    }
+
+    void save() {
+        tools_.stop(session_);
+        const Status saved = session_.save();
+        state_.note = saved ? "saved" : to_string(saved.error());
+    }
+
+    bool pressed(int key) const { return ImGui::IsKeyPressed(key, false); }
+
+    void set_scale(float scale) {
+        state_.scale = std::clamp(scale, 0.5f, 4.0f);
+        load_fonts(state_.scale);
+        apply_theme(state_.dark, state_.scale);
+        if (Status uploaded = overlay_->upload_fonts(); !uploaded) state_.note = to_string(uploaded.error());
+    }
+
+    void handle_keys() {
+        const ImGuiIO& io = ImGui::GetIO();
+        if (io.WantTextInput || state_.closing || state_.recovering) return;
+        if (io.KeyCtrl) {
+            if (pressed(GLFW_KEY_Z) || pressed(GLFW_KEY_Y)) {
+                tools_.stop(session_);
+                tools_.forget_selection();
+                const bool forward = pressed(GLFW_KEY_Y) || io.KeyShift;
+                const std::string name = forward ? session_.redo() : session_.undo();
+                state_.note = name.empty() ? "nothing to do" : (forward ? "done again: " : "undone: ") + name;
+            }
+            if (pressed(GLFW_KEY_S)) save();
+            return;
+        }
+        const std::pair<int, Tool> tools[] = {{GLFW_KEY_B, Tool::brush},
+                                              {GLFW_KEY_P, Tool::polygon},
+                                              {GLFW_KEY_T, Tool::place},
+                                              {GLFW_KEY_V, Tool::select}};
+        for (const auto& [key, tool] : tools)
+            if (pressed(key) && tools_.tool != tool) {
+                tools_.stop(session_);
+                tools_.tool = tool;
+            }
+        const float factor = ImGui::IsKeyPressed(GLFW_KEY_RIGHT_BRACKET, true)  ? 1.15f
+                             : ImGui::IsKeyPressed(GLFW_KEY_LEFT_BRACKET, true) ? 1.0f / 1.15f
+                                                                                : 1.0f;
+        if (io.KeyShift)
+            tools_.brush.density_per_m2 = std::clamp(tools_.brush.density_per_m2 * factor, 0.001f, 20.0f);
+        else
+            tools_.brush.radius_m = std::clamp(tools_.brush.radius_m * factor, 0.2f, 100.0f);
+        if (pressed(GLFW_KEY_F1)) state_.help = !state_.help;
+        if (pressed(GLFW_KEY_DELETE)) tools_.act_on_selection(session_, "delete", nlohmann::json::object());
+        const auto& json = session_.document().root().text->json;
+        if (const auto plants = json.find("plants"); plants != json.end() && plants->is_object()) {
+            int key = GLFW_KEY_1;
+            for (const auto& [name, ignored] : plants->items()) {
+                if (key <= GLFW_KEY_9 && pressed(key)) {
+                    tools_.active = name;
+                    tools_.brush.kinds = {name};
+                }
+                ++key;
+            }
+        }
+    }
+
+    void fly(float step_s) {
+        const ImGuiIO& io = ImGui::GetIO();
+        const Camera before = camera_;
+        if (!io.WantTextInput && !io.KeyCtrl) {
+            auto axis = [&](int forward, int back) {
+                return float(io.KeysDown[forward]) - float(io.KeysDown[back]);
+            };
+            const vec3 move = camera_.forward() * axis(GLFW_KEY_W, GLFW_KEY_S) +
+                              camera_.right() * axis(GLFW_KEY_D, GLFW_KEY_A) +
+                              vec3(0.0f, axis(GLFW_KEY_E, GLFW_KEY_Q), 0.0f);
+            camera_.position_world +=
+                dvec3(move * (k_walk_m_per_s * (io.KeyShift ? k_fast_factor : 1.0f) * step_s));
+        }
+        if (!io.WantCaptureMouse) {
+            if (io.MouseDown[1]) {
+                camera_.yaw_rad -= io.MouseDelta.x * k_turn_rad_per_px;
+                camera_.pitch_rad = std::clamp(camera_.pitch_rad - io.MouseDelta.y * k_turn_rad_per_px,
+                                               -k_pitch_limit_rad, k_pitch_limit_rad);
+            }
+            if (io.MouseWheel != 0.0f) {
+                const float away_m =
+                    figures_.cursor ? float(glm::length(*figures_.cursor - camera_.position_world)) : 20.0f;
+                camera_.position_world +=
+                    dvec3(camera_.forward() * (0.12f * io.MouseWheel * std::clamp(away_m, 2.0f, 200.0f)));
+            }
+        }
+        moved_ = !(camera_ == before);
+    }
+
+    Gesture gesture() const {
+        const ImGuiIO& io = ImGui::GetIO();
+        Gesture gesture;
+        const bool in_view = !io.WantCaptureMouse && !state_.closing && !state_.recovering;
+        if (in_view || io.MouseDown[0]) gesture.ground = figures_.cursor;
+        gesture.pressed = in_view && ImGui::IsMouseClicked(0);
+        gesture.held = io.MouseDown[0];
+        gesture.released = ImGui::IsMouseReleased(0);
+        gesture.shift = io.KeyShift;
+        gesture.control = io.KeyCtrl;
+        gesture.alt = io.KeyAlt;
+        gesture.confirmed = !io.WantTextInput && (pressed(GLFW_KEY_ENTER) || pressed(GLFW_KEY_KP_ENTER));
+        gesture.cancelled = pressed(GLFW_KEY_ESCAPE);
+        return gesture;
+    }
+
+    void draw_on_ground(const std::vector<dvec2>& points, bool closed, ImU32 color) const {
+        ImDrawList* list = ImGui::GetBackgroundDrawList();
+        const ViewSize size{float(view_->width), float(view_->height)};
+        std::optional<vec2> before;
+        const size_t count = points.size() + (closed && !points.empty() ? 1 : 0);
+        for (size_t i = 0; i < count; ++i) {
+            const dvec2 p = points[i % points.size()];
+            const auto at =
+                project(camera_, size, {p.x, ground_height(session_.terrain(), p.x, p.y) + 0.05, p.y});
+            if (at && before)
+                list->AddLine({before->x, before->y}, {at->x, at->y}, color, 1.5f * state_.scale);
+            before = at;
+        }
+    }
+
+    void draw_marks() const {
+        const ImU32 color = ImGui::GetIO().KeyShift || ImGui::GetIO().KeyCtrl ? IM_COL32(255, 90, 60, 255)
+                                                                              : IM_COL32(255, 240, 120, 255);
+        if (tools_.tool == Tool::brush && figures_.cursor && !ImGui::GetIO().WantCaptureMouse) {
+            std::vector<dvec2> circle;
+            for (int i = 0; i < 48; ++i) {
+                const float angle = 2.0f * k_pi * float(i) / 48.0f;
+                circle.emplace_back(figures_.cursor->x + double(tools_.brush.radius_m * portable_cos(angle)),
+                                    figures_.cursor->z + double(tools_.brush.radius_m * portable_sin(angle)));
+            }
+            draw_on_ground(circle, true, color);
+        }
+        if (tools_.tool == Tool::polygon) draw_on_ground(tools_.polygon(), true, color);
+        if (tools_.tool == Tool::select && tools_.selected()) {
+            const PlacedPlant& plant = *tools_.selected();
+            const dvec2 at = ground_place(plant);
+            const Box bounds = view_->bounds_of(plant, session_.document());
+            const double reach_m = std::max(0.3, 0.5 * double(std::max(bounds.size().x, bounds.size().z)) *
+                                                     double(unpack_scale(plant.scale)));
+            draw_on_ground({at + dvec2(-reach_m, -reach_m), at + dvec2(reach_m, -reach_m),
+                            at + dvec2(reach_m, reach_m), at + dvec2(-reach_m, reach_m)},
+                           true, IM_COL32(120, 220, 255, 255));
+        }
+    }
+
+    Status frame(float step_s) {
+        overlay_->begin_frame();
+        ImGui_ImplGlfw_NewFrame();
+        ImGui::NewFrame();
+        const ImGuiIO& io = ImGui::GetIO();
+        const ViewSize size{float(view_->width), float(view_->height)};
+        // Fonts are made anew before anything of this frame refers to them, in the next.
+        float scale_by = 1.0f;
+        if (io.KeyCtrl && !io.WantTextInput) {
+            if (pressed(GLFW_KEY_EQUAL) || pressed(GLFW_KEY_KP_ADD)) scale_by = 1.15f;
+            if (pressed(GLFW_KEY_MINUS) || pressed(GLFW_KEY_KP_SUBTRACT)) scale_by = 1.0f / 1.15f;
+        }
+        fly(step_s);
+        figures_.cursor = pick_ground(camera_, size, {io.MousePos.x, io.MousePos.y}, session_.terrain());
+        handle_keys();
+        if (!state_.recovering) tools_.handle(session_, gesture());
+        draw_marks();
+        draw_panels(session_, tools_, *view_, figures_, state_);
+        if (std::exchange(state_.wants_save, false)) save();
+        for (Error& warning : session_.take_warnings()) {
+            state_.note = to_string(warning);
+            state_.warnings.push_back(std::move(warning));
+        }
+        ImGui::Render();
+
+        if (Status followed = view_->follow(session_); !followed) state_.note = to_string(followed.error());
+        settings_of_frame_.shadows = state_.shadows ? ShadowKind::light_space : ShadowKind::none;
+        const double begin_ms = now_ms();
+        COPPICE_TRY(const gpu::CommandRing::Frame drawn, view_->begin_frame(camera_, settings_of_frame_));
+        overlay_->record(drawn.commands, view_->vegetation->color(), ImGui::GetDrawData());
+        COPPICE_CHECK(swapchain_.present(view_->ring, drawn.commands, overlay_->pixels(),
+                                         {view_->width, view_->height}, {view_->width, view_->height}));
+        COPPICE_CHECK(view_->ring.wait(drawn.serial));
+        view_->tell_frame_ms(now_ms() - begin_ms);
+        const FrameReport& report = view_->vegetation->report();
+        figures_.sample_distance_px = report.sample_distance_px;
+        figures_.vertices = report.vertices;
+        show_title();
+        if (scale_by != 1.0f) set_scale(state_.scale * scale_by);
+        return {};
+    }
+
+    void show_title() {
+        std::string title = std::filesystem::path(session_.document().root_path()).filename().string() +
+                            (session_.saved() ? "" : " *") + " - Coppice";
+        if (title == title_) return;
+        title_ = std::move(title);
+        glfwSetWindowTitle(window_, title_.c_str());
+    }
+
+    Registry& registry_;
+    Session& session_;
+    const EditorWindowSettings& settings_;
+    GLFWwindow* window_ = nullptr;
+    std::unique_ptr<EditorView> view_;
+    Swapchain swapchain_;
+    std::unique_ptr<Overlay> overlay_;
+    bool imgui_ = false;
+    Tools tools_;
+    PanelState state_;
+    ViewFigures figures_;
+    Camera camera_;
+    FrameSettings settings_of_frame_;
+    bool moved_ = true;
+    std::string title_;
+};
+
+Status run_window(Registry& registry, Session& session, const EditorWindowSettings& settings) {
+    if (!Window::display_available())
+        return fail(ErrorId::device_missing, "", "", "there is no display",
+                    "set DISPLAY, or run a script: --script FILE");
+    EditorWindow window(registry, session, settings);
+    COPPICE_CHECK(window.start());
+    return window.run();
+}
+
+const EditorWindowInterface k_interface{sizeof(EditorWindowInterface), &Window::display_available,
+                                        &run_window};
+
+int load(const CoppiceHost* host) {
+    return host->provide(host->context, k_editor_window_interface, k_editor_window_version, &k_interface);
+}
+
+const CoppicePlugin k_plugin{
+    sizeof(CoppicePlugin), COPPICE_PLUGIN_ABI, "editor_window", COPPICE_VERSION, load, nullptr};
+
+}  // namespace
+}  // namespace coppice
+
+extern "C" COPPICE_PLUGIN_EXPORT const CoppicePlugin* coppice_plugin(void) { return &coppice::k_plugin; }

@@ -1,0 +1,196 @@
+#include "editor/window/tools.h"
+
+#include <fmt/format.h>
+#include "runtime/core/hash.h"
+
+namespace coppice {
+namespace {
+
+constexpr double k_pick_radius_m = 3.0;
+constexpr double k_step_share = 0.25;  // of the radius: a stroke's pieces are that long at least
+
+}  // namespace
+
+const char* name_of(Tool tool) {
+    switch (tool) {
+        case Tool::brush:
+            return "Brush";
+        case Tool::polygon:
+            return "Polygon";
+        case Tool::place:
+            return "Place";
+        case Tool::select:
+            return "Select";
+    }
+    return "";
+}
+
+nlohmann::json Tools::rule() const {
+    nlohmann::json shares = nlohmann::json::object();
+    for (const std::string& kind : brush.kinds) shares[kind] = 1;
+    if (shares.empty() && !active.empty()) shares[active] = 1;
+    nlohmann::json rule = {{"plants", shares},
+                           {"density_per_m2", brush.density_per_m2},
+                           {"scale", {brush.scale_low, std::max(brush.scale_low, brush.scale_high)}},
+                           {"tilt_deg", brush.tilt_deg},
+                           {"align_to_ground", brush.align_to_ground},
+                           {"seed", hash_combine(stroke_number_, 1)}};
+    if (brush.spacing_m > 0.0f) rule["spacing_m"] = brush.spacing_m;
+    if (brush.limit_slope) rule["slope_max_deg"] = brush.slope_max_deg;
+    if (brush.limit_altitude)
+        rule["altitude_m"] = {brush.altitude_low_m, std::max(brush.altitude_low_m, brush.altitude_high_m)};
+    if (!brush.exclude.empty()) rule["exclude"] = brush.exclude;
+    return rule;
+}
+
+void Tools::perform(Session& session, const char* command, const nlohmann::json& arguments) {
+    stop(session);
+    auto edit = session.perform(command, arguments);
+    message = edit ? "" : to_string(edit.error());
+}
+
+void Tools::act_on_selection(Session& session, const char* command, nlohmann::json arguments) {
+    if (!selected_) return;
+    const dvec2 at = ground_place(*selected_);
+    arguments["near"] = {at.x, at.y};
+    arguments["radius_m"] = 0.01;
+    arguments["populations"] = {session.document().kinds()[selected_->kind]};
+    stop(session);
+    auto edit = session.perform(command, arguments);
+    message = edit ? "" : to_string(edit.error());
+    if (!edit || !*edit) return;
+    const FileEdit& change = (*edit)->files[0];
+    selected_ = change.added.empty() ? std::nullopt : std::optional(change.added[0]);
+}
+
+void Tools::pick(Session& session, dvec2 at) {
+    selected_.reset();
+    double nearest_m = k_pick_radius_m;
+    session.document().root().plants.each_in(at - k_pick_radius_m, at + k_pick_radius_m,
+                                             [&](const PlacedPlant& plant) {
+                                                 const double away_m = glm::length(ground_place(plant) - at);
+                                                 if (away_m > nearest_m) return;
+                                                 nearest_m = away_m;
+                                                 selected_ = plant;
+                                             });
+}
+
+void Tools::begin_stroke(Session& session, const Gesture& gesture) {
+    message.clear();
+    erasing_ = gesture.shift || gesture.control;
+    erased_kinds_.clear();
+    points_.clear();
+    stroke_plants_ = 0;
+    ++stroke_number_;
+    stroke_.reset();
+    if (erasing_) {
+        if (gesture.control && !gesture.shift) {
+            if (active.empty()) return;
+            erased_kinds_ = {session.changing_document().kind_of(active)};
+        }
+    } else {
+        const CommandContext context = session.context();
+        const EcoFile& root = session.document().root();
+        auto names = names_of(context.document, root, context.document.root_path());
+        auto text = JsonDocument::parse(nlohmann::json{{"scatter", rule()}}.dump(), "");
+        if (names && text) {
+            JsonObject arguments(*text, text->root(), "");
+            const Region under_brush{{RegionShape{}}};
+            BrushRule read = read_brush_rule(arguments, *names, session.terrain(), &under_brush);
+            if (text->sound())
+                stroke_.emplace(std::move(read), double(brush.radius_m));
+            else
+                message = to_string(text->status().error());
+        } else {
+            message = to_string(names ? text.error() : names.error());
+        }
+        if (root.plants_lost) {
+            message = root.placed_path + " could not be read: nothing is placed beside it";
+            stroke_.reset();
+        }
+        if (!stroke_) return;
+    }
+    dragging_ = true;
+    if (gesture.ground) extend_stroke(session, {gesture.ground->x, gesture.ground->z});
+}
+
+void Tools::extend_stroke(Session& session, dvec2 to) {
+    const double radius_m = double(brush.radius_m);
+    if (!points_.empty() && glm::length(to - points_.back()) < k_step_share * radius_m) return;
+    Target target{session.document().root_path(), &session.changing_document().root(), session.terrain()};
+    std::vector<PlacedPlant> removed, added;
+    if (erasing_) {
+        std::vector<dvec2> piece;
+        if (!points_.empty()) piece.push_back(points_.back());
+        piece.push_back(to);
+        removed = plants_under(target.file->plants, piece, radius_m, erased_kinds_, 1.0, 0);
+    } else {
+        auto more = stroke_->extend(to, target.file->plants);
+        if (!more) {
+            message = to_string(more.error());
+            return;
+        }
+        added = std::move(*more);
+    }
+    points_.push_back(to);
+    stroke_plants_ += removed.size() + added.size();
+    session.extend(edit_of(target, std::move(removed), std::move(added)));
+}
+
+void Tools::stop(Session& session) {
+    if (!dragging_) return;
+    dragging_ = false;
+    stroke_.reset();
+    if (tool == Tool::brush) {
+        session.finish(fmt::format("{} {} plants", erasing_ ? "erase" : "paint", stroke_plants_));
+    } else if (tool == Tool::select && selected_ && glm::length(drag_to_ - drag_from_) > 0.05) {
+        const dvec2 by = drag_to_ - drag_from_;
+        act_on_selection(session, "move", {{"by", {by.x, by.y}}});
+    }
+}
+
+void Tools::handle(Session& session, const Gesture& gesture) {
+    const std::optional<dvec2> at =
+        gesture.ground ? std::optional(dvec2(gesture.ground->x, gesture.ground->z)) : std::nullopt;
+    if (gesture.pressed && gesture.alt && at) {
+        // What stands there becomes what is painted.
+        pick(session, *at);
+        if (selected_) active = session.document().kinds()[selected_->kind];
+        if (selected_) brush.kinds = {active};
+        return;
+    }
+    switch (tool) {
+        case Tool::brush:
+            if (gesture.pressed) begin_stroke(session, gesture);
+            if (dragging_ && gesture.held && at) extend_stroke(session, *at);
+            break;
+        case Tool::polygon:
+            if (gesture.pressed && at) polygon_.push_back(*at);
+            if (gesture.cancelled) polygon_.clear();
+            if (gesture.confirmed && polygon_.size() >= 3) {
+                nlohmann::json points = nlohmann::json::array();
+                for (const dvec2& point : polygon_) points.push_back({point.x, point.y});
+                ++stroke_number_;
+                polygon_.clear();
+                perform(session, "fill", {{"polygon", points}, {"scatter", rule()}});
+            }
+            break;
+        case Tool::place:
+            if (gesture.pressed && at) {
+                perform(session, "place", {{"population", active}, {"at", {at->x, at->y}}});
+                if (message.empty()) pick(session, *at);
+            }
+            break;
+        case Tool::select:
+            if (gesture.pressed && at) {
+                pick(session, *at);
+                drag_from_ = drag_to_ = *at;
+                dragging_ = selected_.has_value();
+            }
+            if (dragging_ && gesture.held && at) drag_to_ = *at;
+            break;
+    }
+    if (gesture.released) stop(session);
+}
+
+}  // namespace coppice

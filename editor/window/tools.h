@@ -1,0 +1,66 @@
+// What the mouse does in the view: brush, polygon, single plants. Turns gestures into commands of a session.
+#pragma once
+#include <optional>
+#include <set>
+#include "editor/commands/brush.h"
+#include "editor/session/session.h"
+
+namespace coppice {
+
+enum class Tool { brush, polygon, place, select };
+const char* name_of(Tool tool);
+
+// How the panels are set.
+struct BrushSettings {
+    float radius_m = 6.0f, density_per_m2 = 0.3f, spacing_m = 0.0f;
+    float scale_low = 0.8f, scale_high = 1.2f, tilt_deg = 2.0f, align_to_ground = 0.0f;
+    bool limit_slope = false, limit_altitude = false;
+    float slope_max_deg = 35.0f, altitude_low_m = 0.0f, altitude_high_m = 100.0f;
+    std::string exclude;          // a region of the scene
+    std::set<std::string> kinds;  // that are painted, in equal shares
+};
+
+// One frame's gesture.
+struct Gesture {
+    std::optional<dvec3> ground;                           // under the cursor
+    bool pressed = false, held = false, released = false;  // the left button, in the view
+    bool shift = false, control = false, alt = false;
+    bool confirmed = false, cancelled = false;  // Enter or right click; Escape
+};
+
+class Tools {
+  public:
+    Tool tool = Tool::brush;
+    BrushSettings brush;
+    std::string active;   // population: placed, painted where none is chosen, erased with Ctrl
+    std::string message;  // what went wrong last; empty: nothing
+
+    void handle(Session& session, const Gesture& gesture);
+    // Also when the tool changes or the window loses the mouse: a stroke ends where it is.
+    void stop(Session& session);
+    // What the selected plant becomes.
+    void act_on_selection(Session& session, const char* command, nlohmann::json arguments);
+    void perform(Session& session, const char* command, const nlohmann::json& arguments);
+    nlohmann::json rule() const;  // "scatter", without the region
+
+    const std::vector<dvec2>& polygon() const { return polygon_; }
+    const std::optional<PlacedPlant>& selected() const { return selected_; }
+    void forget_selection() { selected_.reset(); }
+
+  private:
+    void begin_stroke(Session& session, const Gesture& gesture);
+    void extend_stroke(Session& session, dvec2 to);
+    void pick(Session& session, dvec2 at);
+
+    std::optional<PaintStroke> stroke_;
+    bool erasing_ = false, dragging_ = false;
+    std::vector<uint16_t> erased_kinds_;
+    std::vector<dvec2> points_;
+    size_t stroke_plants_ = 0;
+    uint64_t stroke_number_ = 0;
+    std::vector<dvec2> polygon_;
+    std::optional<PlacedPlant> selected_;
+    dvec2 drag_from_{0.0}, drag_to_{0.0};
+};
+
+}  // namespace coppice

@@ -1,0 +1,254 @@
+// Nested maps: which are due, and where they lie.
+#include "plugins/vegetation/shadow/clipmap.h"
+
+#include <gtest/gtest.h>
+#include <algorithm>
+#include "runtime/core/random.h"
+
+namespace coppice {
+namespace {
+
+ClipmapFrame frame_at(dvec3 camera_world) {
+    ClipmapFrame frame{};
+    frame.camera_world = camera_world;
+    frame.origin_world = dvec3(100, 0, -300);
+    frame.to_sun = normalize_or(vec3(0.4f, 0.7f, -0.2f), vec3(0, 1, 0));
+    frame.focal_px = 606.0f;
+    frame.nearest_m = 0.5f;
+    frame.far_m = 700.0f;
+    frame.bounds_camera = {vec3(-500, -30, -500), vec3(500, 60, 500)};
+    frame.side_texels = Clipmap::side_for(frame.focal_px);
+    frame.map_count = Clipmap::count_for(frame.side_texels, 1000.0f);
+    return frame;
+}
+
+size_t commit(Clipmap& maps, bool incomplete = false) {
+    const size_t count = maps.due().size();
+    const std::vector<uint8_t> flags(count, incomplete);
+    maps.commit({reinterpret_cast<const bool*>(flags.data()), count});
+    return count;
+}
+
+vec3 texel_of(const ShadowView& view, vec3 p) {
+    return {glm::dot(view.row_x, vec4(p, 1)), glm::dot(view.row_y, vec4(p, 1)), glm::dot(view.row_z, vec4(p, 1))};
+}
+
+TEST(Clipmap, ReachesAsFarAsShadowsAreSeen) {
+    for (float focal_px : {1.0f, 300.0f, 606.0f, 2000.0f, 1e9f}) {
+        const uint32_t side = Clipmap::side_for(focal_px);
+        EXPECT_EQ(side % 64, 0u);
+        EXPECT_GE(side, 128u);
+        EXPECT_LE(side, 4096u);
+        for (float far_m : {0.0f, 1.0f, 100.0f, 1000.0f, 1e9f, INFINITY}) {
+            const uint32_t count = Clipmap::count_for(side, far_m);
+            ASSERT_GE(count, 1u);
+            ASSERT_LE(count, k_most_shadow_maps);
+            if (count < k_most_shadow_maps) {
+                EXPECT_GE(Clipmap::reach_m(count - 1, side), far_m);
+            }
+            if (count > 1) {
+                EXPECT_LT(Clipmap::reach_m(count - 2, side), far_m);
+            }
+        }
+    }
+}
+
+TEST(Clipmap, AllNeededAreDueAtOnceAndThenNone) {
+    Clipmap maps;
+    ClipmapFrame frame = frame_at(dvec3(1e6, 20, -3e5));
+    maps.update(frame);
+    EXPECT_EQ(maps.due().size(), maps.last() - maps.first() + 1);
+    // Asked again before they are drawn, the same.
+    const size_t due = maps.due().size();
+    maps.update(frame);
+    EXPECT_EQ(maps.due().size(), due);
+    EXPECT_EQ(commit(maps), due);
+    maps.update(frame);
+    EXPECT_TRUE(maps.due().empty());
+    maps.forget();
+    maps.update(frame);
+    EXPECT_EQ(maps.due().size(), due);
+    // From far above no place is near enough for the first ones.
+    frame.nearest_m = 100.0f;
+    maps.update(frame);
+    EXPECT_GT(maps.first(), 3u);
+    frame.side_texels += 64;
+    commit(maps);
+    maps.update(frame);
+    EXPECT_EQ(maps.due().size(), maps.last() - maps.first() + 1);
+}
+
+// Wherever the viewer goes and turns, every place within a map's reach lies inside it, and stays on its texel however often the map
+// is made anew.
+TEST(Clipmap, PlacesWithinReachAreInsideAndStayOnTheirTexels) {
+    Random random(3);
+    for (double away_m : {0.0, 1e5, 1e7}) {
+        Clipmap maps;
+        dvec3 camera(away_m, 5.0, -away_m);
+        dvec3 before = camera;
+        for (int step = 0; step < 200; ++step) {
+            camera += dvec3(random.next_in(-1, 2), random.next_in(-0.2f, 0.2f), random.next_in(-1, 1)) * 0.3;
+            ClipmapFrame frame = frame_at(camera);
+            frame.motion_m = vec3(camera - before) * 30.0f;
+            before = camera;
+            maps.update(frame);
+            commit(maps);
+            ASSERT_LE(maps.first(), maps.last());
+            const float side = float(frame.side_texels);
+            for (uint32_t map = maps.first(); map <= maps.last(); ++map) {
+                const ShadowView view = maps.view(map, camera);
+                const float reach = Clipmap::reach_m(map, frame.side_texels);
+                for (int i = 0; i < 4; ++i) {
+                    const vec3 direction = normalize_or(
+                        vec3(random.next_in(-1, 1), random.next_in(-1, 1), random.next_in(-1, 1)), vec3(0, 1, 0));
+                    const vec3 at = texel_of(view, direction * reach);
+                    ASSERT_TRUE(at.x >= 1 && at.y >= 1 && at.x <= side - 1 && at.y <= side - 1)
+                        << map << ": " << at.x << ' ' << at.y << " of " << side;
+                }
+                // The texel's corners lie at whole multiples of its size from the origin.
+                const vec3 axis_x = vec3(view.row_x) * Clipmap::texel_m(map);
+                const double world = glm::dot(dvec3(axis_x), camera - dvec3(100, 0, -300)) / Clipmap::texel_m(map);
+                const double offset = double(view.row_x.w) - world;
+                if (away_m == 0.0) {
+                    EXPECT_NEAR(offset, std::round(offset), 0.02) << map;
+                }
+            }
+        }
+    }
+}
+
+// In flight maps are made one by one, before places lack them; a fast viewer does without the finest.
+TEST(Clipmap, FlightsMakeMapsOneByOne) {
+    for (double speed_m : {0.02, 0.3, 5.0, 100.0}) {
+        Clipmap maps;
+        dvec3 camera(0.0, 2.0, 0.0);
+        size_t made = 0, most = 0;
+        for (int step = 0; step < 600; ++step) {
+            ClipmapFrame frame = frame_at(camera);
+            frame.motion_m = vec3(float(speed_m) * 30.0f, 0, 0);
+            maps.update(frame);
+            const size_t now = commit(maps);
+            if (step > 0) {
+                made += now;
+                most = std::max(most, now);
+            }
+            camera.x += speed_m;
+        }
+        EXPECT_LE(most, 2u) << speed_m;
+        EXPECT_LE(made, 200u) << speed_m;
+        EXPECT_GT(made, 2u) << speed_m;
+    }
+}
+
+TEST(Clipmap, AMovingSunMakesMapsOneByOneAndAJumpAll) {
+    Clipmap maps;
+    ClipmapFrame frame = frame_at(dvec3(0, 2, 0));
+    maps.update(frame);
+    const size_t all = commit(maps);
+    // A day in 20 minutes at 60 Hz.
+    float angle = 0.5f;
+    for (int step = 0; step < 300; ++step) {
+        angle += 2.0f * 3.14159265f / (20 * 60 * 60);
+        frame.to_sun = vec3(std::cos(angle), std::sin(angle), 0);
+        maps.update(frame);
+        if (step == 0) {
+            EXPECT_EQ(maps.due().size(), all);  // it was elsewhere
+        } else {
+            EXPECT_LE(maps.due().size(), 1u);
+        }
+        commit(maps);
+        for (uint32_t map = maps.first(); map <= maps.last(); ++map) {
+            const vec3 axis = vec3(maps.view(map, frame.camera_world).row_z);
+            EXPECT_LT(glm::length(axis / glm::length(axis) - frame.to_sun), 0.01f);
+        }
+    }
+    frame.to_sun = vec3(0, 1, 0);
+    maps.update(frame);
+    EXPECT_EQ(maps.due().size(), all);
+}
+
+TEST(Clipmap, WhatLackedTilesIsMadeAgainWhenSomeHaveBeenRead) {
+    Clipmap maps;
+    const ClipmapFrame frame = frame_at(dvec3(0, 2, 0));
+    maps.update(frame);
+    const size_t all = commit(maps, true);
+    maps.update(frame);
+    EXPECT_TRUE(maps.due().empty());
+    maps.note_arrivals();
+    for (size_t i = 0; i < all; ++i) {
+        maps.update(frame);
+        EXPECT_EQ(commit(maps), 1u);
+    }
+    maps.note_arrivals();
+    maps.update(frame);
+    EXPECT_TRUE(maps.due().empty());
+}
+
+// While plants are changed in every frame each map has its turn.
+TEST(Clipmap, ChangesReachEveryMapOneByOne) {
+    Clipmap maps;
+    const ClipmapFrame frame = frame_at(dvec3(0, 2, 0));
+    maps.update(frame);
+    const size_t all = commit(maps);
+    std::vector<int> made(k_most_shadow_maps);
+    for (size_t i = 0; i < 3 * all; ++i) {
+        maps.note_changes();
+        maps.update(frame);
+        ASSERT_EQ(maps.due().size(), 1u);
+        ++made[maps.due()[0]];
+        commit(maps);
+    }
+    for (uint32_t map = maps.first(); map <= maps.last(); ++map) EXPECT_EQ(made[map], 3) << map;
+}
+
+// A caster that shadows a place of the map lies in its column, however high it stands.
+TEST(Clipmap, CastersOfAMapLieInItsColumn) {
+    Clipmap maps;
+    const ClipmapFrame frame = frame_at(dvec3(50, 2, 70));
+    maps.update(frame);
+    Random random(9);
+    const Frustum view = make_frustum(Camera{}, 800, 700);
+    for (uint32_t map : maps.due()) {
+        const Frustum column = maps.casters(map, view, frame.camera_world, 3.0f);
+        EXPECT_EQ(column.near_m, 3.0f);
+        const ShadowView rows = maps.view(map, frame.camera_world);
+        const float half_m = 0.5f * float(frame.side_texels) * Clipmap::texel_m(map);
+        for (int i = 0; i < 200; ++i) {
+            const vec3 p = vec3(random.next_in(-2, 2), random.next_in(-2, 2), random.next_in(-2, 2)) * half_m +
+                           frame.to_sun * random.next_in(0.0f, 100.0f);
+            const vec3 at = texel_of(rows, p);
+            const float side = float(frame.side_texels);
+            const bool inside = at.x > 0 && at.y > 0 && at.x < side && at.y < side;
+            if (inside) {
+                EXPECT_TRUE(sees_sphere(column, p, 1e-3f * half_m));
+            } else if (at.x < -2 || at.y < -2 || at.x > side + 2 || at.y > side + 2) {
+                EXPECT_FALSE(sees_sphere(column, p, 1e-3f * half_m));
+            }
+        }
+    }
+}
+
+// Whatever a host says, rows are finite.
+TEST(Clipmap, AnyFrameGivesFiniteRows) {
+    for (float far_m : {0.0f, 1e-6f, 1e9f, INFINITY})
+        for (double away_m : {0.0, 1e12})
+            for (vec3 to_sun : {vec3(0, 1, 0), vec3(0, -1, 0), vec3(1, 0, 0), vec3(0)}) {
+                Clipmap maps;
+                ClipmapFrame frame = frame_at(dvec3(away_m));
+                frame.far_m = far_m;
+                frame.nearest_m = far_m;
+                frame.to_sun = to_sun;
+                frame.motion_m = vec3(far_m < 1e10f ? far_m : 0.0f);
+                frame.bounds_camera = {};
+                maps.update(frame);
+                commit(maps);
+                for (uint32_t map = maps.first(); map <= maps.last(); ++map) {
+                    const ShadowView view = maps.view(map, frame.camera_world);
+                    for (const vec4& row : {view.row_x, view.row_y, view.row_z, view.row_w})
+                        EXPECT_TRUE(std::isfinite(row.x + row.y + row.z + row.w));
+                }
+            }
+}
+
+}  // namespace
+}  // namespace coppice

@@ -1,7 +1,8 @@
 #include "editor/window/overlay.h"
 
 #include <imgui.h>
-#include <backends/imgui_impl_vulkan.h>
+#include "runtime/gpu/vulkan.h"
+#include <backends/imgui_impl_vulkan.h>  // after the header that names its functions
 
 namespace coppice {
 namespace {

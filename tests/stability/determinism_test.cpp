@@ -139,8 +139,8 @@ TEST_F(Determinism, EveryCompilerAndThreadCountGivesTheSamePicture) {
         ASSERT_TRUE(plants) << to_string(plants.error());
         ASSERT_TRUE((*drawn)->vegetation().set_world(std::move(*forest), std::move(*plants), {}));
         uint64_t new_counts = 0, new_words = 0, new_colors = 0;
-        for (ShadowKind kind :
-             {ShadowKind::none, ShadowKind::uniform, ShadowKind::perspective, ShadowKind::light_space})
+        for (ShadowKind kind : {ShadowKind::none, ShadowKind::uniform, ShadowKind::perspective,
+                                ShadowKind::light_space, ShadowKind::clipmap})
             for (float sample_px : {0.5f, 1.0f, 4.0f}) {
                 FrameSettings settings;
                 settings.shadows = kind;

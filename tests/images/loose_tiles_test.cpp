@@ -2,6 +2,8 @@
 #include "tests/images/hills.h"
 
 #include <algorithm>
+#include <cmath>
+#include "plugins/vegetation/shadow/clipmap.h"
 
 namespace coppice {
 namespace {
@@ -67,9 +69,17 @@ struct LooseTiles : testing::Test {
         return count;
     }
 
-    std::vector<uint8_t> draw(bool level_of_detail) {
+    // Of red, green and blue.
+    static double mean(const std::vector<uint8_t>& rgba) {
+        double sum = 0.0;
+        for (size_t i = 0; i < rgba.size(); ++i) sum += i % 4 < 3 ? double(rgba[i]) : 0.0;
+        return sum / (0.75 * double(rgba.size()));
+    }
+
+    std::vector<uint8_t> draw(bool level_of_detail, ShadowKind shadows = ShadowKind::none) {
         FrameSettings settings;
         settings.level_of_detail = level_of_detail;
+        settings.shadows = shadows;
         do {
             auto frame = ring_.begin();
             EXPECT_TRUE(frame);
@@ -117,15 +127,41 @@ TEST_F(LooseTiles, LookAsTheSceneDoes) {
     for (size_t t = kept; t < scene_.tiles.size(); ++t) ASSERT_TRUE(add_loose(t, t));
     EXPECT_LE(differing(draw(false), as_scene), k_tie_limit);
 
-    // Changed, and taken away again.
-    ASSERT_TRUE(vegetation_->set_loose_tile(kept, {}));
+    // Changed, and taken away again: what is not hidden by others.
+    size_t fullest = kept;
+    for (size_t t = kept; t < scene_.tiles.size(); ++t)
+        if (scene_.tiles[t].plant_count > scene_.tiles[fullest].plant_count) fullest = t;
+    ASSERT_TRUE(vegetation_->set_loose_tile(fullest, {}));
     const std::vector<uint8_t> without = draw(false);
     EXPECT_GT(differing(without, as_scene), 50 * k_tie_limit);
-    ASSERT_TRUE(add_loose(kept, kept));
+    ASSERT_TRUE(add_loose(fullest, fullest));
     EXPECT_LE(differing(draw(false), as_scene), k_tie_limit);
     for (size_t t = kept; t < scene_.tiles.size(); ++t) ASSERT_TRUE(vegetation_->set_loose_tile(t, {}));
     ASSERT_TRUE(vegetation_->set_scene(empty_, plants_));
     EXPECT_LE(differing(draw(false), of_nothing), k_tie_limit);
+}
+
+// Shadows that stay are made again, map by map.
+TEST_F(LooseTiles, ThrowTheShadowsOfTheScene) {
+    auto drawn_for_long = [&] {
+        for (uint32_t i = 0; i < k_most_shadow_maps; ++i) draw(true, ShadowKind::clipmap);
+        return mean(draw(true, ShadowKind::clipmap));
+    };
+    ASSERT_TRUE(vegetation_->set_scene(scene_, plants_));
+    const double unshadowed = mean(draw(true)), as_scene = drawn_for_long();
+    EXPECT_LT(as_scene, 0.99 * unshadowed);
+    ASSERT_TRUE(vegetation_->set_scene(empty_, plants_));
+    const double of_nothing = drawn_for_long();
+    for (size_t t = 0; t < scene_.tiles.size(); ++t) ASSERT_TRUE(add_loose(t, t));
+    // What was empty has no depths for them: all at once.
+    EXPECT_NEAR(mean(draw(true, ShadowKind::clipmap)), as_scene, 0.002 * as_scene);
+    for (size_t t = 1; t < scene_.tiles.size(); t += 2) ASSERT_TRUE(vegetation_->set_loose_tile(t, {}));
+    const double of_half = drawn_for_long();
+    EXPECT_GT(std::fabs(of_half - as_scene), 0.01 * as_scene);
+    for (size_t t = 1; t < scene_.tiles.size(); t += 2) ASSERT_TRUE(add_loose(t, t));
+    EXPECT_NEAR(drawn_for_long(), as_scene, 0.002 * as_scene);
+    for (size_t t = 0; t < scene_.tiles.size(); ++t) ASSERT_TRUE(vegetation_->set_loose_tile(t, {}));
+    EXPECT_EQ(drawn_for_long(), of_nothing);
 }
 
 // Levels of detail are each plant's own, so that few pixels change where no cloud stands for a tile.

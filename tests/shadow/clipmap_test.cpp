@@ -8,7 +8,7 @@
 namespace coppice {
 namespace {
 
-ClipmapFrame frame_at(dvec3 camera_world) {
+ClipmapFrame frame_at(dvec3 camera_world, dvec3 scene_world = dvec3(0.0)) {
     ClipmapFrame frame{};
     frame.camera_world = camera_world;
     frame.origin_world = dvec3(100, 0, -300);
@@ -16,7 +16,9 @@ ClipmapFrame frame_at(dvec3 camera_world) {
     frame.focal_px = 606.0f;
     frame.nearest_m = 0.5f;
     frame.far_m = 700.0f;
-    frame.bounds_camera = {vec3(-500, -30, -500), vec3(500, 60, 500)};
+    const dvec3 scene_camera = scene_world - camera_world;
+    frame.bounds_camera = {vec3(scene_camera + dvec3(-500, -30, -500)),
+                           vec3(scene_camera + dvec3(500, 60, 500))};
     frame.side_texels = Clipmap::side_for(frame.focal_px);
     frame.map_count = Clipmap::count_for(frame.side_texels, 1000.0f);
     return frame;
@@ -30,7 +32,8 @@ size_t commit(Clipmap& maps, bool incomplete = false) {
 }
 
 vec3 texel_of(const ShadowView& view, vec3 p) {
-    return {glm::dot(view.row_x, vec4(p, 1)), glm::dot(view.row_y, vec4(p, 1)), glm::dot(view.row_z, vec4(p, 1))};
+    return {glm::dot(view.row_x, vec4(p, 1)), glm::dot(view.row_y, vec4(p, 1)),
+            glm::dot(view.row_z, vec4(p, 1))};
 }
 
 TEST(Clipmap, ReachesAsFarAsShadowsAreSeen) {
@@ -84,11 +87,12 @@ TEST(Clipmap, PlacesWithinReachAreInsideAndStayOnTheirTexels) {
     Random random(3);
     for (double away_m : {0.0, 1e5, 1e7}) {
         Clipmap maps;
-        dvec3 camera(away_m, 5.0, -away_m);
+        const dvec3 scene(away_m, 0.0, -away_m);
+        dvec3 camera = scene + dvec3(0.0, 5.0, 0.0);
         dvec3 before = camera;
         for (int step = 0; step < 200; ++step) {
             camera += dvec3(random.next_in(-1, 2), random.next_in(-0.2f, 0.2f), random.next_in(-1, 1)) * 0.3;
-            ClipmapFrame frame = frame_at(camera);
+            ClipmapFrame frame = frame_at(camera, scene);
             frame.motion_m = vec3(camera - before) * 30.0f;
             before = camera;
             maps.update(frame);
@@ -100,14 +104,16 @@ TEST(Clipmap, PlacesWithinReachAreInsideAndStayOnTheirTexels) {
                 const float reach = Clipmap::reach_m(map, frame.side_texels);
                 for (int i = 0; i < 4; ++i) {
                     const vec3 direction = normalize_or(
-                        vec3(random.next_in(-1, 1), random.next_in(-1, 1), random.next_in(-1, 1)), vec3(0, 1, 0));
+                        vec3(random.next_in(-1, 1), random.next_in(-1, 1), random.next_in(-1, 1)),
+                        vec3(0, 1, 0));
                     const vec3 at = texel_of(view, direction * reach);
                     ASSERT_TRUE(at.x >= 1 && at.y >= 1 && at.x <= side - 1 && at.y <= side - 1)
                         << map << ": " << at.x << ' ' << at.y << " of " << side;
                 }
                 // The texel's corners lie at whole multiples of its size from the origin.
                 const vec3 axis_x = vec3(view.row_x) * Clipmap::texel_m(map);
-                const double world = glm::dot(dvec3(axis_x), camera - dvec3(100, 0, -300)) / Clipmap::texel_m(map);
+                const double world =
+                    glm::dot(dvec3(axis_x), camera - dvec3(100, 0, -300)) / Clipmap::texel_m(map);
                 const double offset = double(view.row_x.w) - world;
                 if (away_m == 0.0) {
                     EXPECT_NEAR(offset, std::round(offset), 0.02) << map;
@@ -201,6 +207,34 @@ TEST(Clipmap, ChangesReachEveryMapOneByOne) {
     for (uint32_t map = maps.first(); map <= maps.last(); ++map) EXPECT_EQ(made[map], 3) << map;
 }
 
+// A first plant, or one that is higher than all before, lies beyond what depths there are.
+TEST(Clipmap, WhatLeavesTheMapsDepthsMakesAllAnew) {
+    Clipmap maps;
+    ClipmapFrame frame = frame_at(dvec3(0, 2, 0));
+    const Box all = frame.bounds_camera;
+    frame.bounds_camera = {};
+    maps.update(frame);
+    commit(maps);
+    maps.update(frame);
+    EXPECT_TRUE(maps.due().empty());
+    for (const Box& box :
+         {all, Box{all.min, all.max + vec3(0, 5, 0)}, Box{all.min - vec3(0, 5, 0), all.max}}) {
+        frame.bounds_camera = box;
+        maps.update(frame);
+        EXPECT_EQ(maps.due().size(), maps.last() - maps.first() + 1);
+        commit(maps);
+        for (uint32_t map = maps.first(); map <= maps.last(); ++map)
+            for (vec3 corner : {box.min, box.max}) {
+                const float depth = texel_of(maps.view(map, frame.camera_world), corner).z;
+                EXPECT_TRUE(depth > 0.0f && depth < 0.5f) << depth;
+            }
+        frame.bounds_camera = {};
+        maps.update(frame);
+        EXPECT_TRUE(maps.due().empty());
+        commit(maps);
+    }
+}
+
 // A caster that shadows a place of the map lies in its column, however high it stands.
 TEST(Clipmap, CastersOfAMapLieInItsColumn) {
     Clipmap maps;
@@ -214,8 +248,9 @@ TEST(Clipmap, CastersOfAMapLieInItsColumn) {
         const ShadowView rows = maps.view(map, frame.camera_world);
         const float half_m = 0.5f * float(frame.side_texels) * Clipmap::texel_m(map);
         for (int i = 0; i < 200; ++i) {
-            const vec3 p = vec3(random.next_in(-2, 2), random.next_in(-2, 2), random.next_in(-2, 2)) * half_m +
-                           frame.to_sun * random.next_in(0.0f, 100.0f);
+            const vec3 p =
+                vec3(random.next_in(-2, 2), random.next_in(-2, 2), random.next_in(-2, 2)) * half_m +
+                frame.to_sun * random.next_in(0.0f, 100.0f);
             const vec3 at = texel_of(rows, p);
             const float side = float(frame.side_texels);
             const bool inside = at.x > 0 && at.y > 0 && at.x < side && at.y < side;

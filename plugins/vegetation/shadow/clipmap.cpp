@@ -28,6 +28,24 @@ float room_texels(uint32_t side_texels) {
     return std::max((0.5f - k_reach) * float(side_texels) - k_shadow_border_texels, 1.0f);
 }
 
+// Of all that there is, towards the sun, m from the origin; of nothing none.
+struct Heights {
+    double low_m, high_m;
+};
+
+Heights heights_of(const ClipmapFrame& frame, dvec3 to_sun) {
+    const double viewer_m = glm::dot(to_sun, frame.camera_world - frame.origin_world);
+    const Box& b = frame.bounds_camera;
+    if (b.empty()) return {INFINITY, -INFINITY};
+    double low_m = INFINITY, high_m = -INFINITY;
+    for (uint32_t i = 0; i < 8; ++i) {
+        const dvec3 corner(i & 1 ? b.max.x : b.min.x, i & 2 ? b.max.y : b.min.y, i & 4 ? b.max.z : b.min.z);
+        low_m = std::min(low_m, glm::dot(to_sun, corner));
+        high_m = std::max(high_m, glm::dot(to_sun, corner));
+    }
+    return {viewer_m + std::max(low_m, -k_farthest_m), viewer_m + std::min(high_m, k_farthest_m)};
+}
+
 dvec2 on_plane(dvec3 across, dvec3 along, dvec3 p) { return dvec2(glm::dot(across, p), glm::dot(along, p)); }
 
 }  // namespace
@@ -68,36 +86,34 @@ Clipmap::Level Clipmap::level_for(const ClipmapFrame& frame, uint32_t map) const
     const dvec3 viewer = frame.camera_world - frame.origin_world;
     // Whole texels from the origin: texels stand for the same places whenever the map is made.
     level.center = glm::floor((on_plane(level.across, level.along, viewer) + step) / texel + 0.5) * texel;
-    double low = 0.0, high = 0.0;
-    if (!frame.bounds_camera.empty()) {
-        low = INFINITY;
-        high = -INFINITY;
-        for (uint32_t i = 0; i < 8; ++i) {
-            const Box& b = frame.bounds_camera;
-            const dvec3 corner(i & 1 ? b.max.x : b.min.x, i & 2 ? b.max.y : b.min.y, i & 4 ? b.max.z : b.min.z);
-            low = std::min(low, glm::dot(level.to_sun, corner));
-            high = std::max(high, glm::dot(level.to_sun, corner));
-        }
-    }
-    const double sunwards_m = glm::dot(level.to_sun, viewer);
-    level.low_m = sunwards_m + std::max(low, -k_farthest_m) - 1.0;
-    level.high_m = sunwards_m + std::min(high, k_farthest_m) + 1.0;
+    Heights heights = heights_of(frame, level.to_sun);
+    if (frame.bounds_camera.empty()) heights.low_m = heights.high_m = glm::dot(level.to_sun, viewer);
+    // Bounds are rounded anew in each frame.
+    const double margin_m = 1.0 + 1e-6 * (heights.high_m - heights.low_m);
+    level.low_m = heights.low_m - margin_m;
+    level.high_m = heights.high_m + margin_m;
     return level;
 }
 
 float Clipmap::staleness(const Level& level, const ClipmapFrame& frame, uint32_t map) const {
-    if (!level.made || level.side_texels != frame.side_texels || level.map_count != frame.map_count) return INFINITY;
+    if (!level.made || level.side_texels != frame.side_texels || level.map_count != frame.map_count)
+        return INFINITY;
+    // What has come since would be cut off at the map's depths.
+    const Heights heights = heights_of(frame, level.to_sun);
+    if (heights.low_m < level.low_m || heights.high_m > level.high_m) return INFINITY;
     const double turn = glm::length(level.to_sun - dvec3(frame.to_sun));
     // Of the room to move, what a viewer there has used up.
     auto used_at = [&](dvec3 viewer_world) {
-        const dvec2 off = glm::abs(on_plane(level.across, level.along, viewer_world - level.origin_world) - level.center);
+        const dvec2 off =
+            glm::abs(on_plane(level.across, level.along, viewer_world - level.origin_world) - level.center);
         return float(std::max(off.x, off.y) / (double(room_texels(frame.side_texels)) * texel_m(map)));
     };
     const float used = used_at(frame.camera_world);
     if (used >= 1.0f) return used;
     const float used_soon = used_at(frame.camera_world + dvec3(frame.motion_m) * k_lookahead);
     const float leaving = used_soon >= 1.0f ? k_soon + (1.0f - k_soon) * used : 0.0f;
-    const float turned = turn > k_least_sun_turn ? k_soon + (1.0f - k_soon) * float(turn / k_most_sun_turn) : 0.0f;
+    const float turned =
+        turn > k_least_sun_turn ? k_soon + (1.0f - k_soon) * float(turn / k_most_sun_turn) : 0.0f;
     // Of several the oldest goes first, so that each has its turn while changes go on.
     const float age = std::min(float(commit_count_ - level.made_at) / 256.0f, 0.99f);
     const float outdated = level.outdated ? k_soon + (1.0f - k_soon) * age : 0.0f;
@@ -111,7 +127,8 @@ void Clipmap::update(const ClipmapFrame& frame) {
         return map;
     };
     auto lasts = [&](uint32_t map) {
-        return (1.0f + k_ahead) * room_texels(frame.side_texels) * texel_m(map) >= k_least_lasting * glm::length(frame.motion_m);
+        return (1.0f + k_ahead) * room_texels(frame.side_texels) * texel_m(map) >=
+               k_least_lasting * glm::length(frame.motion_m);
     };
     first_ = map_at(frame.nearest_m);
     last_ = std::max(map_at(frame.far_m), first_);
@@ -155,25 +172,29 @@ void Clipmap::note_changes() {
 ShadowView Clipmap::view(uint32_t map, dvec3 camera_world) const {
     const Level& level = is_due(map) ? next_[map] : levels_[map];
     const double texels_per_m = 1.0 / double(texel_m(map)), half = 0.5 * double(level.side_texels);
-    const dvec2 viewer = on_plane(level.across, level.along, camera_world - level.origin_world) - level.center;
+    const dvec2 viewer =
+        on_plane(level.across, level.along, camera_world - level.origin_world) - level.center;
     const double depth_per_m = 0.5 / std::max(level.high_m - level.low_m, 1e-3);
     ShadowView view;
     view.row_x = vec4(dvec4(level.across * texels_per_m, viewer.x * texels_per_m + half));
     view.row_y = vec4(dvec4(level.along * texels_per_m, viewer.y * texels_per_m + half));
-    view.row_z = vec4(dvec4(level.to_sun * depth_per_m,
-                            (glm::dot(level.to_sun, camera_world - level.origin_world) - level.low_m) * depth_per_m));
+    view.row_z =
+        vec4(dvec4(level.to_sun * depth_per_m,
+                   (glm::dot(level.to_sun, camera_world - level.origin_world) - level.low_m) * depth_per_m));
     view.row_w = vec4(0.0f, 0.0f, 0.0f, 1.0f);
     view.least_w = 0.5f;
     return view;
 }
 
-Frustum Clipmap::casters(uint32_t map, const Frustum& view, dvec3 camera_world, float least_distance_m) const {
+Frustum Clipmap::casters(uint32_t map, const Frustum& view, dvec3 camera_world,
+                         float least_distance_m) const {
     const Level& level = is_due(map) ? next_[map] : levels_[map];
     Frustum column = view;
     column.right = column.up = column.forward = vec3(0.0f);
     column.corner_cos = 1.0f;  // it looks everywhere: nothing is off its axis
     column.near_m = least_distance_m;
-    const dvec2 viewer = on_plane(level.across, level.along, camera_world - level.origin_world) - level.center;
+    const dvec2 viewer =
+        on_plane(level.across, level.along, camera_world - level.origin_world) - level.center;
     const double half_m = 0.5 * double(level.side_texels) * double(texel_m(map));
     column.plane_count = 4;
     column.planes[0] = vec4(dvec4(level.across, half_m + viewer.x));

@@ -519,7 +519,8 @@ class VegetationSystems final : public Vegetation {
         const uint64_t pixel_count = uint64_t(rasteriser_->width()) * rasteriser_->height();
         casters_.list(tiles, plants, geometry_, grounds_,
                       {frustum_, camera_.position_world, tile_list_.origin_world(), motion_m_, pixel_count, scene_bounds(),
-                       std::min(frame_plants_.nearest_m(tile_list_), above_ground_m_), refused_side_},
+                       std::min(frame_plants_.nearest_m(tile_list_), above_ground_m_), refused_side_,
+                       settings_.device->limits.storage_range_bytes},
                       light_, drawn_);
     }
 

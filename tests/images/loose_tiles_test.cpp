@@ -144,7 +144,7 @@ TEST_F(LooseTiles, LookAsTheSceneDoes) {
 // Shadows that stay are made again, map by map.
 TEST_F(LooseTiles, ThrowTheShadowsOfTheScene) {
     auto drawn_for_long = [&] {
-        for (uint32_t i = 0; i < k_most_shadow_maps; ++i) draw(true, ShadowKind::clipmap);
+        for (uint32_t i = 0; i < k_shadow_map_places; ++i) draw(true, ShadowKind::clipmap);
         return mean(draw(true, ShadowKind::clipmap));
     };
     ASSERT_TRUE(vegetation_->set_scene(scene_, plants_));

@@ -19,8 +19,7 @@ ClipmapFrame frame_at(dvec3 camera_world, dvec3 scene_world = dvec3(0.0)) {
     const dvec3 scene_camera = scene_world - camera_world;
     frame.bounds_camera = {vec3(scene_camera + dvec3(-500, -30, -500)),
                            vec3(scene_camera + dvec3(500, 60, 500))};
-    frame.side_texels = Clipmap::side_for(frame.focal_px);
-    frame.map_count = Clipmap::count_for(frame.side_texels, 1000.0f);
+    frame.side_texels = Clipmap::side_for(frame.focal_px, 1u << 27);
     return frame;
 }
 
@@ -36,23 +35,58 @@ vec3 texel_of(const ShadowView& view, vec3 p) {
             glm::dot(view.row_z, vec4(p, 1))};
 }
 
-TEST(Clipmap, ReachesAsFarAsShadowsAreSeen) {
-    for (float focal_px : {1.0f, 300.0f, 606.0f, 2000.0f, 1e9f}) {
-        const uint32_t side = Clipmap::side_for(focal_px);
-        EXPECT_EQ(side % 64, 0u);
-        EXPECT_GE(side, 128u);
-        EXPECT_LE(side, 4096u);
-        for (float far_m : {0.0f, 1.0f, 100.0f, 1000.0f, 1e9f, INFINITY}) {
-            const uint32_t count = Clipmap::count_for(side, far_m);
-            ASSERT_GE(count, 1u);
-            ASSERT_LE(count, k_most_shadow_maps);
-            if (count < k_most_shadow_maps) {
-                EXPECT_GE(Clipmap::reach_m(count - 1, side), far_m);
-            }
-            if (count > 1) {
-                EXPECT_LT(Clipmap::reach_m(count - 2, side), far_m);
+TEST(Clipmap, HasPlacesWithinWhatTheDeviceTakes) {
+    for (float focal_px : {1.0f, 300.0f, 606.0f, 2000.0f, 1e9f})
+        for (uint64_t most_bytes : {uint64_t(0), uint64_t(1) << 27, uint64_t(1) << 32}) {
+            const uint64_t side = Clipmap::side_for(focal_px, most_bytes);
+            EXPECT_EQ(side % 64, 0u);
+            EXPECT_GE(side, 128u);
+            EXPECT_LE(side, 4096u);
+            if (most_bytes > 0) {
+                EXPECT_LE(side * side * 4 * k_shadow_map_places, most_bytes);
             }
         }
+    EXPECT_EQ(Clipmap::side_for(606.0f, 1u << 27), 768u);
+}
+
+// From the nearest that is seen to the farthest, as far as there are places.
+TEST(Clipmap, ReachesFromTheNearestToTheFarthest) {
+    for (float near_m : {0.0f, 1e-4f, 0.3f, 50.0f, INFINITY})
+        for (float far_m : {0.0f, 1e-3f, 1.0f, 300.0f, 1e5f, INFINITY}) {
+            Clipmap maps;
+            ClipmapFrame frame = frame_at(dvec3(0, 2, 0));
+            frame.nearest_m = near_m;
+            frame.far_m = far_m;
+            maps.update(frame);
+            ASSERT_LE(maps.first(), maps.last());
+            ASSERT_LT(maps.last(), k_shadow_map_count);
+            ASSERT_LE(maps.last() - maps.first(), k_shadow_map_places - 1);
+            EXPECT_TRUE(maps.last() + 1 == k_shadow_map_count ||
+                        Clipmap::reach_m(maps.last(), frame.side_texels) >= far_m);
+            if (maps.last() - maps.first() < k_shadow_map_places - 1 && maps.first() > 0 && near_m <= far_m &&
+                near_m < 1e5f) {
+                EXPECT_LT(Clipmap::reach_m(maps.first() - 1, frame.side_texels), near_m);
+                EXPECT_GE(Clipmap::reach_m(maps.first(), frame.side_texels), near_m);
+            }
+        }
+}
+
+// A map that takes another's place is made before it is seen.
+TEST(Clipmap, PlacesAreOfOneMapAtATime) {
+    Clipmap maps;
+    ClipmapFrame frame = frame_at(dvec3(0, 2, 0));
+    for (float scale : {1.0f, 1e-4f, 1e3f, 1.0f}) {
+        frame.nearest_m = 0.5f * scale;
+        frame.far_m = 700.0f * scale;
+        maps.update(frame);
+        EXPECT_FALSE(maps.due().empty());
+        commit(maps);
+        maps.update(frame);
+        for (uint32_t map = maps.first(); map <= maps.last(); ++map) {
+            const double texel_m = 1.0 / glm::length(dvec3(vec3(maps.view(map, frame.camera_world).row_x)));
+            EXPECT_NEAR(texel_m, Clipmap::texel_m(map), 1e-5 * texel_m);
+        }
+        EXPECT_TRUE(maps.due().empty());
     }
 }
 
@@ -72,9 +106,10 @@ TEST(Clipmap, AllNeededAreDueAtOnceAndThenNone) {
     maps.update(frame);
     EXPECT_EQ(maps.due().size(), due);
     // From far above no place is near enough for the first ones.
+    const uint32_t first = maps.first();
     frame.nearest_m = 100.0f;
     maps.update(frame);
-    EXPECT_GT(maps.first(), 3u);
+    EXPECT_GT(maps.first(), first + 3);
     frame.side_texels += 64;
     commit(maps);
     maps.update(frame);
@@ -196,7 +231,7 @@ TEST(Clipmap, ChangesReachEveryMapOneByOne) {
     const ClipmapFrame frame = frame_at(dvec3(0, 2, 0));
     maps.update(frame);
     const size_t all = commit(maps);
-    std::vector<int> made(k_most_shadow_maps);
+    std::vector<int> made(k_shadow_map_count);
     for (size_t i = 0; i < 3 * all; ++i) {
         maps.note_changes();
         maps.update(frame);
@@ -218,7 +253,7 @@ TEST(Clipmap, WhatLeavesTheMapsDepthsMakesAllAnew) {
     maps.update(frame);
     EXPECT_TRUE(maps.due().empty());
     for (const Box& box :
-         {all, Box{all.min, all.max + vec3(0, 5, 0)}, Box{all.min - vec3(0, 5, 0), all.max}}) {
+         {all, Box{all.min, all.max + vec3(0, 50, 0)}, Box{all.min - vec3(0, 50, 0), all.max}}) {
         frame.bounds_camera = box;
         maps.update(frame);
         EXPECT_EQ(maps.due().size(), maps.last() - maps.first() + 1);

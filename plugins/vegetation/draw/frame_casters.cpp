@@ -8,7 +8,7 @@
 namespace coppice {
 namespace {
 
-static_assert(k_most_shadow_maps == k_most_work_maps);
+static_assert(k_shadow_map_places == k_most_work_maps);
 
 // Of d': what throws shadows is drawn with so much coarser primitives than what is seen. Measured: twice as coarse takes half
 // the time and adds nothing to the picture's error (docs/shadows.md).
@@ -29,9 +29,9 @@ uint32_t side_of(uint32_t wanted_texels, uint64_t pixel_count) {
 }
 
 // Of nested maps: one lies behind the other where buffers may be bound.
-uint32_t nested_side_of(uint32_t wanted_texels, float focal_px) {
+uint32_t nested_side_of(uint32_t wanted_texels, float focal_px, uint64_t most_bytes) {
     constexpr uint32_t k_step = 64, k_most = 4096;
-    if (wanted_texels == 0) return Clipmap::side_for(focal_px);
+    if (wanted_texels == 0) return Clipmap::side_for(focal_px, most_bytes);
     return std::clamp((wanted_texels + k_step - 1) / k_step * k_step, k_step, k_most);
 }
 
@@ -90,7 +90,7 @@ void FrameCasters::list(const TileList::Tiles& tiles, const TileList::Plants& pl
         return clipmap_.forget();
     to_sun_ = to_sun;
     far_m_ = settings.shadow_distance_m;
-    side_texels_ = is_nested_ ? nested_side_of(settings.shadow_side_texels, view.frustum.focal_px)
+    side_texels_ = is_nested_ ? nested_side_of(settings.shadow_side_texels, view.frustum.focal_px, view.most_map_bytes)
                               : side_of(settings.shadow_side_texels, view.pixel_count);
     if (side_texels_ >= view.refused_side_texels) {
         clipmap_.forget();
@@ -128,11 +128,11 @@ void FrameCasters::list_warped(const TileList::Tiles& tiles, const TileList::Pla
 void FrameCasters::list_nested(const TileList::Tiles& tiles, const TileList::Plants& plants,
                                const SceneGeometry& geometry, std::span<const Ground> grounds,
                                const View& view, const FrameSettings& settings, float far_m) {
-    map_count_ = Clipmap::count_for(side_texels_, settings.shadow_distance_m);
+    map_count_ = k_shadow_map_places;
     // Along the view a place is nearer than it is; off the axis as much farther as corners are.
     const float farthest_m = std::min(far_m / view.frustum.corner_cos, farthest(view.scene_bounds));
     clipmap_.update({view.camera_world, view.origin_world, view.motion_m, to_sun_, view.frustum.focal_px, 0.5f * view.nearest_m,
-                     farthest_m, view.scene_bounds, side_texels_, map_count_});
+                     farthest_m, view.scene_bounds, side_texels_});
     FrameSettings of_maps = settings;
     of_maps.level_of_detail = true;
     of_maps.sample_distance_px = 1.0f;
@@ -140,10 +140,11 @@ void FrameCasters::list_nested(const TileList::Tiles& tiles, const TileList::Pla
     for (uint32_t map : clipmap_.due()) {
         // At that distance 2 px are a texel.
         const float least_distance_m = Clipmap::texel_m(map) * view.frustum.focal_px / k_caster_coarseness;
-        casters_[map].list(tiles, plants, geometry, grounds,
-                           clipmap_.casters(map, view.frustum, view.camera_world, least_distance_m),
-                           view.camera_world, of_maps);
-        drawn_.push_back({map, clipmap_.view(map, view.camera_world), vec4(0.0f, 0.0f, 0.0f, 1.0f), least_distance_m});
+        const uint32_t place = Clipmap::place_of(map);
+        casters_[place].list(tiles, plants, geometry, grounds,
+                             clipmap_.casters(map, view.frustum, view.camera_world, least_distance_m),
+                             view.camera_world, of_maps);
+        drawn_.push_back({place, clipmap_.view(map, view.camera_world), vec4(0.0f, 0.0f, 0.0f, 1.0f), least_distance_m});
     }
     for (uint32_t map = clipmap_.first(); map <= clipmap_.last(); ++map)
         seen_.push_back(clipmap_.view(map, view.camera_world));
@@ -163,9 +164,9 @@ ShadowSettings FrameCasters::maps() const {
     maps.seen = seen_;
     maps.far_m = far_m_;
     if (!is_nested_) return maps;
-    maps.first_map = clipmap_.first();
-    maps.first_reach_m = Clipmap::reach_m(maps.first_map, side_texels_);
-    maps.first_texel_m = Clipmap::texel_m(maps.first_map);
+    maps.first_map = Clipmap::place_of(clipmap_.first());
+    maps.first_reach_m = Clipmap::reach_m(clipmap_.first(), side_texels_);
+    maps.first_texel_m = Clipmap::texel_m(clipmap_.first());
     return maps;
 }
 
@@ -188,7 +189,7 @@ void FrameCasters::add_wishes(std::vector<TileWish>& wishes) const {
     constexpr float k_caster_share = 0.25f;
     const uint32_t first = is_nested_ ? clipmap_.first() : 0, last = is_nested_ ? clipmap_.last() : 0;
     for (uint32_t map = first; any() && map <= last; ++map)
-        for (TileWish wish : casters_[map].wishes()) {
+        for (TileWish wish : casters_[Clipmap::place_of(map)].wishes()) {
             wish.priority *= k_caster_share;
             wishes.push_back(wish);
         }

@@ -45,6 +45,7 @@ class FrameCasters {
         float nearest_m;     // from the viewer to what is seen, about
         // A map as large as one that found no room is not drawn.
         uint32_t refused_side_texels;
+        uint64_t most_map_bytes;  // that the device takes
     };
     // Which maps are to be drawn, and which tiles into them. Without a sun, or with shadows off, there are none. settings: of the
     // frame as it is drawn. May be called again before the frame is drawn.
@@ -91,7 +92,7 @@ class FrameCasters {
     uint32_t side_texels_ = 0, map_count_ = 1;
     bool is_nested_ = false;
     Clipmap clipmap_;
-    std::array<MapCasters, k_most_work_maps> casters_;  // by map
+    std::array<MapCasters, k_most_work_maps> casters_;  // by place
     std::vector<ShadowMapDraw> drawn_;
     std::vector<ShadowView> seen_;
     std::vector<size_t> part_counts_;

@@ -36,7 +36,7 @@ struct PictureSettings {
 
 // A map that is drawn in this frame.
 struct ShadowMapDraw {
-    uint32_t map;  // which, of those there is room for
+    uint32_t map;  // where, of the k_most_work_maps places
     ShadowView view;
     vec4 viewer;  // what casters' sizes in pixels refer to: the view's axis; w: Frustum::corner_cos
     float least_distance_m = 0.0f;  // likewise, from nearer than that
@@ -46,8 +46,8 @@ struct ShadowMapDraw {
 struct ShadowSettings {
     uint32_t side_texels = 0;                // of each; 0: none, and no pass is made
     std::span<const ShadowMapDraw> drawn;    // the i-th by WorkList::Layout::maps[i]; others stay as they are
-    // Of the maps that places are looked up in: [first_map, first_map + seen.size()). A single one, or nested ones: each for places
-    // up to twice as far from the viewer as the one before, with texels twice as large, and w = 1.
+    // Of the maps that points are looked up in, a single one or nested ones, in places first_map, first_map + 1, ... and, behind the
+    // last of k_most_work_maps, 0: each of the nested ones for what is up to twice as far from the viewer as the one before, with texels twice as large, and w = 1.
     std::span<const ShadowView> seen;
     uint32_t first_map = 0;
     float first_reach_m = 0.0f;  // the distance that the first of nested ones is for

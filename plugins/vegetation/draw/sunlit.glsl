@@ -5,6 +5,7 @@ layout(binding = 1) readonly buffer Lights {
     Light light;
     vec4 nested_rows[3 * 12];  // of nested maps in their order: columns, rows, depths
 };
+const uint k_map_places = 12u;
 layout(binding = 3) readonly buffer ShadowMap { uint shadow_map[]; };
 
 // A texel says what covers its centre, so places are moved off their surface by so many texels along the normal, the more the sun
@@ -60,7 +61,7 @@ float sunlit_in_nested(Light sun, vec3 place, float distance_m, vec3 normal, out
     int rows = int(map) * 3;
     vec3 at = vec3(dot(nested_rows[rows], p), dot(nested_rows[rows + 1], p), dot(nested_rows[rows + 2], p));
     float side = sun.sun_along.w;
-    return sunlit_at(at, uint(sun.nested.z + map) * uint(side) * uint(side), side);
+    return sunlit_at(at, (uint(sun.nested.z + map) % k_map_places) * uint(side) * uint(side), side);
 }
 
 // place: relative to the viewer, along_m along the view. unknown: the share in the mean, as without a map; outside of the map it holds.

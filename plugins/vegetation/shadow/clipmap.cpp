@@ -50,15 +50,15 @@ dvec2 on_plane(dvec3 across, dvec3 along, dvec3 p) { return dvec2(glm::dot(acros
 
 }  // namespace
 
-uint32_t Clipmap::side_for(float focal_px) {
-    const float side = focal_px / (k_texel_px * k_reach);
-    return side < 4096.0f ? std::max(uint32_t(side / 64.0f + 0.5f), 2u) * 64u : 4096u;
+uint32_t Clipmap::side_for(float focal_px, uint64_t most_bytes) {
+    const double room = std::sqrt(double(most_bytes) / (4.0 * k_shadow_map_places));
+    const double side = std::min({double(focal_px) / double(k_texel_px * k_reach), room, 4096.0});
+    return std::max(uint32_t(side / 64.0 + (side < room ? 0.5 : 0.0)), 2u) * 64u;
 }
 
-uint32_t Clipmap::count_for(uint32_t side_texels, float far_m) {
-    uint32_t count = 1;
-    while (count < k_most_shadow_maps && reach_m(count - 1, side_texels) < far_m) ++count;
-    return count;
+float Clipmap::texel_m(uint32_t map) {
+    constexpr int k_centimetre_map = 14;
+    return std::ldexp(0.01f, int(map) - k_centimetre_map);
 }
 
 float Clipmap::reach_m(uint32_t map, uint32_t side_texels) {
@@ -71,12 +71,11 @@ Clipmap::Level Clipmap::level_for(const ClipmapFrame& frame, uint32_t map) const
     scene.side_texels = frame.side_texels;
     const CheckedShadowScene checked = check_shadow_scene(scene);
     Level level;
-    level.made = true;
+    level.map = map;
     level.to_sun = checked.to_sun;
     level.across = checked.across;
     level.along = checked.along;
     level.side_texels = frame.side_texels;
-    level.map_count = frame.map_count;
     level.origin_world = frame.origin_world;
     const double texel = texel_m(map);
     // Ahead of the viewer, by what leaves all that is needed now within the map.
@@ -88,16 +87,16 @@ Clipmap::Level Clipmap::level_for(const ClipmapFrame& frame, uint32_t map) const
     level.center = glm::floor((on_plane(level.across, level.along, viewer) + step) / texel + 0.5) * texel;
     Heights heights = heights_of(frame, level.to_sun);
     if (frame.bounds_camera.empty()) heights.low_m = heights.high_m = glm::dot(level.to_sun, viewer);
-    // Bounds are rounded anew in each frame.
-    const double margin_m = 1.0 + 1e-6 * (heights.high_m - heights.low_m);
+    // Bounds are rounded anew in each frame, and plants grow.
+    const double margin_m = 1e-3 + 0.02 * (heights.high_m - heights.low_m);
     level.low_m = heights.low_m - margin_m;
     level.high_m = heights.high_m + margin_m;
     return level;
 }
 
-float Clipmap::staleness(const Level& level, const ClipmapFrame& frame, uint32_t map) const {
-    if (!level.made || level.side_texels != frame.side_texels || level.map_count != frame.map_count)
-        return INFINITY;
+float Clipmap::staleness(const ClipmapFrame& frame, uint32_t map) const {
+    const Level& level = levels_[place_of(map)];
+    if (level.map != map || level.side_texels != frame.side_texels) return INFINITY;
     // What has come since would be cut off at the map's depths.
     const Heights heights = heights_of(frame, level.to_sun);
     if (heights.low_m < level.low_m || heights.high_m > level.high_m) return INFINITY;
@@ -123,21 +122,22 @@ float Clipmap::staleness(const Level& level, const ClipmapFrame& frame, uint32_t
 void Clipmap::update(const ClipmapFrame& frame) {
     auto map_at = [&](float distance_m) {
         uint32_t map = 0;
-        while (map + 1 < frame.map_count && reach_m(map, frame.side_texels) < distance_m) ++map;
+        while (map + 1 < k_shadow_map_count && reach_m(map, frame.side_texels) < distance_m) ++map;
         return map;
     };
     auto lasts = [&](uint32_t map) {
         return (1.0f + k_ahead) * room_texels(frame.side_texels) * texel_m(map) >=
                k_least_lasting * glm::length(frame.motion_m);
     };
-    first_ = map_at(frame.nearest_m);
-    last_ = std::max(map_at(frame.far_m), first_);
+    last_ = map_at(frame.far_m);
+    first_ = std::min(map_at(frame.nearest_m), last_);
+    first_ = std::max(first_ + k_shadow_map_places, last_ + 1) - k_shadow_map_places;
     while (first_ < last_ && !lasts(first_)) ++first_;
     due_count_ = 0;
     float stalest = k_soon;
-    uint32_t soon = k_most_shadow_maps;
+    uint32_t soon = k_shadow_map_count;
     for (uint32_t map = first_; map <= last_; ++map) {
-        const float stale = staleness(levels_[map], frame, map);
+        const float stale = staleness(frame, map);
         if (stale >= 1.0f) {
             due_[due_count_++] = map;
         } else if (stale >= stalest) {
@@ -145,17 +145,18 @@ void Clipmap::update(const ClipmapFrame& frame) {
             soon = map;
         }
     }
-    if (due_count_ == 0 && soon < k_most_shadow_maps) due_[due_count_++] = soon;
-    for (uint32_t map : due()) next_[map] = level_for(frame, map);
+    if (due_count_ == 0 && soon < k_shadow_map_count) due_[due_count_++] = soon;
+    for (uint32_t map : due()) next_[place_of(map)] = level_for(frame, map);
 }
 
 bool Clipmap::is_due(uint32_t map) const { return std::ranges::find(due(), map) != due().end(); }
 
 void Clipmap::commit(std::span<const bool> incomplete) {
     for (size_t i = 0; i < due_count_; ++i) {
-        levels_[due_[i]] = next_[due_[i]];
-        levels_[due_[i]].incomplete = incomplete[i];
-        levels_[due_[i]].made_at = commit_count_;
+        Level& level = levels_[place_of(due_[i])];
+        level = next_[place_of(due_[i])];
+        level.incomplete = incomplete[i];
+        level.made_at = commit_count_;
     }
     due_count_ = 0;
     ++commit_count_;
@@ -170,11 +171,11 @@ void Clipmap::note_changes() {
 }
 
 ShadowView Clipmap::view(uint32_t map, dvec3 camera_world) const {
-    const Level& level = is_due(map) ? next_[map] : levels_[map];
+    const Level& level = this->level(map);
     const double texels_per_m = 1.0 / double(texel_m(map)), half = 0.5 * double(level.side_texels);
     const dvec2 viewer =
         on_plane(level.across, level.along, camera_world - level.origin_world) - level.center;
-    const double depth_per_m = 0.5 / std::max(level.high_m - level.low_m, 1e-3);
+    const double depth_per_m = 0.5 / std::max(level.high_m - level.low_m, 1e-6);
     ShadowView view;
     view.row_x = vec4(dvec4(level.across * texels_per_m, viewer.x * texels_per_m + half));
     view.row_y = vec4(dvec4(level.along * texels_per_m, viewer.y * texels_per_m + half));
@@ -188,7 +189,7 @@ ShadowView Clipmap::view(uint32_t map, dvec3 camera_world) const {
 
 Frustum Clipmap::casters(uint32_t map, const Frustum& view, dvec3 camera_world,
                          float least_distance_m) const {
-    const Level& level = is_due(map) ? next_[map] : levels_[map];
+    const Level& level = this->level(map);
     Frustum column = view;
     column.right = column.up = column.forward = vec3(0.0f);
     column.corner_cos = 1.0f;  // it looks everywhere: nothing is off its axis

@@ -1,6 +1,7 @@
 // Nested maps of the sun (a clipmap) around the viewer, each of texels twice as large as the one before, that stay what they are
 // until the viewer or the sun has moved on: made once, from casters as fine as the map's texels, and looked up in every frame.
-// Distance decides which map a place is looked up in, so texels are as large as the picture's pixels times k_texel_px at most.
+// Distance decides which map a place is looked up in, so texels are as large as the picture's pixels times k_texel_px at most,
+// of a leaf before the lens and of a range of hills alike.
 #pragma once
 #include <array>
 #include <span>
@@ -9,7 +10,8 @@
 
 namespace coppice {
 
-inline constexpr uint32_t k_most_shadow_maps = 12;
+// Maps there are, of texels of 0.6 um to 1.3 km, and how many of them are kept at a time: neighbours, each in a place of its own.
+inline constexpr uint32_t k_shadow_map_count = 32, k_shadow_map_places = 12;
 
 // What the frame is like.
 struct ClipmapFrame {
@@ -21,16 +23,15 @@ struct ClipmapFrame {
     float nearest_m, far_m;  // receivers lie between, about
     Box bounds_camera;       // all that there is
     uint32_t side_texels;    // of each map
-    uint32_t map_count;
 };
 
 class Clipmap {
   public:
-    // Of maps for a picture with that focal length, a multiple of 64.
-    static uint32_t side_for(float focal_px);
-    // As many as it takes to reach so far, at most k_most_shadow_maps.
-    static uint32_t count_for(uint32_t side_texels, float far_m);
-    static float texel_m(uint32_t map) { return k_first_texel_m * float(1u << map); }
+    // Of maps for a picture with that focal length, a multiple of 64; fewer where all places in most_bytes, 4 a texel, have no more.
+    static uint32_t side_for(float focal_px, uint64_t most_bytes);
+    static float texel_m(uint32_t map);
+    // Where it is kept.
+    static uint32_t place_of(uint32_t map) { return map % k_shadow_map_places; }
     // How far from the viewer a map is looked up at most.
     static float reach_m(uint32_t map, uint32_t side_texels);
 
@@ -56,23 +57,24 @@ class Clipmap {
     uint32_t last() const { return last_; }
 
   private:
-    static constexpr float k_first_texel_m = 0.01f;
     struct Level {
-        bool made = false, incomplete = false, outdated = false;
+        uint32_t map = k_shadow_map_count;  // none
+        bool incomplete = false, outdated = false;
         uint32_t made_at = 0;  // of commit_count_
         dvec3 to_sun{0.0}, across{0.0}, along{0.0};
         glm::dvec2 center{0.0};          // of the map, on the plane at right angles to the sun, m from origin_world
         dvec3 origin_world{0.0};
         double low_m = 0.0, high_m = 0.0;  // towards the sun, likewise; depths 0 and 1/2
-        uint32_t side_texels = 0, map_count = 0;
+        uint32_t side_texels = 0;
     };
     Level level_for(const ClipmapFrame& frame, uint32_t map) const;
     bool is_due(uint32_t map) const;
     // 1 and more: places lack this map. 0: as good as new.
-    float staleness(const Level& level, const ClipmapFrame& frame, uint32_t map) const;
+    float staleness(const ClipmapFrame& frame, uint32_t map) const;
+    const Level& level(uint32_t map) const { return (is_due(map) ? next_ : levels_)[place_of(map)]; }
 
-    std::array<Level, k_most_shadow_maps> levels_{}, next_{};
-    std::array<uint32_t, k_most_shadow_maps> due_{};
+    std::array<Level, k_shadow_map_places> levels_{}, next_{};
+    std::array<uint32_t, k_shadow_map_places> due_{};
     size_t due_count_ = 0;
     uint32_t commit_count_ = 0;
     uint32_t first_ = 0, last_ = 0;

@@ -342,7 +342,7 @@ class VegetationSystems final : public Vegetation {
         report_ = {};
         scene_triangles_ = 0;
         casters_.forget();
-        moved_ = true;
+        moved_ = is_new_ = true;
     }
 
     // How long nothing has moved, and what follows for this frame.
@@ -394,7 +394,8 @@ class VegetationSystems final : public Vegetation {
 
     // Where the viewer will be: as far on as it came in the slower of the last two frames, so that a cut is no motion.
     void predict_motion() {
-        const dvec3 step_m = camera_.position_world - last_camera_.position_world;
+        const dvec3 step_m =
+            std::exchange(is_new_, false) ? dvec3(0.0) : camera_.position_world - last_camera_.position_world;
         const dvec3 slower_m = glm::length(step_m) < glm::length(last_step_m_) ? step_m : last_step_m_;
         motion_m_ = vec3(slower_m) * k_frames_ahead;
         last_step_m_ = step_m;
@@ -677,7 +678,8 @@ class VegetationSystems final : public Vegetation {
     Light last_light_;
     FrameSettings last_frame_;
     uint32_t rested_ = 0;
-    bool moved_ = true;  // what is drawn changed in another way
+    bool moved_ = true;   // what is drawn changed in another way
+    bool is_new_ = true;  // the scene: nobody has been anywhere in it
     bool keep_ = false, keep_refused_ = false;
     uint32_t averaged_ = 0;       // frames that the mean is of, before this one
     bool tiles_changed_ = false;  // of a streamed world, since the last frame

@@ -12,14 +12,20 @@
 namespace coppice {
 
 Result<MappedFile> MappedFile::open(const std::string& path) {
-    int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    // Not blocking, so that a pipe is refused below instead of waited for.
+    int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (fd < 0) {
         if (errno == ENOENT || errno == ENOTDIR)
             return fail(ErrorId::file_missing, path, "", "no such file", "check the path");
         return fail(ErrorId::file_unreadable, path, "", std::strerror(errno), "check the permissions");
     }
     struct stat info {};
-    if (::fstat(fd, &info) != 0 || !S_ISREG(info.st_mode)) {
+    if (::fstat(fd, &info) != 0) {
+        const int stat_errno = errno;
+        ::close(fd);
+        return fail(ErrorId::file_unreadable, path, "", std::strerror(stat_errno), "check the disk");
+    }
+    if (!S_ISREG(info.st_mode)) {
         ::close(fd);
         return fail(ErrorId::file_missing, path, "", "not a regular file", "name a file");
     }

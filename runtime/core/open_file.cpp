@@ -21,7 +21,9 @@ Result<OpenFile> OpenFile::open(const std::string& path) {
         return fail(ErrorId::file_unreadable, path, "", std::strerror(errno), "check the permissions");
     }
     struct stat info {};
-    if (::fstat(file.descriptor_, &info) != 0 || !S_ISREG(info.st_mode))
+    if (::fstat(file.descriptor_, &info) != 0)
+        return fail(ErrorId::file_unreadable, path, "", std::strerror(errno), "check the disk");
+    if (!S_ISREG(info.st_mode))
         return fail(ErrorId::file_missing, path, "", "not a regular file", "name a file");
     file.size_bytes_ = uint64_t(info.st_size);
     tell_file_watcher(path);

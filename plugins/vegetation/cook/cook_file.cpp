@@ -44,21 +44,24 @@ std::string_view json_of(std::span<const std::byte> bytes) {
     return chunk_bytes <= bytes.size() - 20 ? std::string_view(text + 20, chunk_bytes) : std::string_view();
 }
 
-// Of the files a glTF document refers to. One that cannot be read counts as empty: cooking reports it.
-uint64_t hash_references(const std::string& path, std::span<const std::byte> bytes) {
+// Of the files a glTF document refers to. One that is missing counts as empty: cooking reports it, or does without. One that is there
+// and cannot be read is an error: cooking might read it, and what came of it would be kept as what is made without.
+Result<uint64_t> hash_references(const std::string& path, std::span<const std::byte> bytes) {
     uint64_t hash = 0;
     auto document = parse_gltf(json_of(bytes), path);
     if (!document) return hash;
     std::string base_dir = std::filesystem::path(path).parent_path().string();
-    auto add = [&](const std::optional<std::string>& uri) {
-        if (!uri || is_data_uri(*uri)) return;
+    auto add = [&](const std::optional<std::string>& uri) -> Status {
+        if (!uri || is_data_uri(*uri)) return {};
         auto file_path = resolve_uri(*uri, base_dir, path, "");
-        if (!file_path) return;
+        if (!file_path) return {};
         auto file = MappedFile::open(*file_path);
+        if (!file && file.error().id != ErrorId::file_missing) return fail(file.error());
         hash = hash_combine(hash, file ? hash_bytes(file->bytes().data(), file->bytes().size()) : 0);
+        return {};
     };
-    for (const GltfBuffer& buffer : document->buffers) add(buffer.uri);
-    for (const GltfImage& image : document->images) add(image.uri);
+    for (const GltfBuffer& buffer : document->buffers) COPPICE_CHECK(add(buffer.uri));
+    for (const GltfImage& image : document->images) COPPICE_CHECK(add(image.uri));
     return hash;
 }
 
@@ -130,7 +133,8 @@ Result<std::string> cooked_path(const std::string& cache_dir, const std::string&
         key = hash_combine(key, variation);
         key = hash_combine(key, k_growth_version);
     } else {
-        key = hash_combine(key, hash_references(source_path, source.bytes()));
+        COPPICE_TRY(const uint64_t referred, hash_references(source_path, source.bytes()));
+        key = hash_combine(key, referred);
     }
     std::string name =
         fmt::format("{}-{}.plant", std::filesystem::path(source_path).stem().string(), hash_to_hex(key));

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include "tools/coppice/command.h"
 #include "tools/coppice/play_host.h"
+#include "tools/coppice/play_lockstep.h"
 #include "tools/coppice/play_loop.h"
 #include "tools/coppice/play_report.h"
 #include "tools/coppice/play_window.h"
@@ -47,7 +48,7 @@ struct PlayCommand {
     std::string headless;
     float sample_distance_px = 0.0f;
     std::string sun, budgets;
-    bool full = false;
+    bool full = false, lockstep = false;
 };
 
 // Found out before the work, not after it.
@@ -93,6 +94,7 @@ Status run(PlayCommand command) {
     if (options.golden.update) COPPICE_CHECK(make_folder(options.golden.folder));
     if (!options.out.empty()) COPPICE_CHECK(make_folder(options.out));
     COPPICE_TRY(std::unique_ptr<PlayHost> host, PlayHost::create(options));
+    if (command.lockstep) return play_in_lockstep(*host, options);
     COPPICE_TRY(const PlayRecord record, play_headless(*host, options));
     print_table(record);
     if (!options.out.empty()) {
@@ -210,6 +212,8 @@ void add_play(CLI::App& app, Command& chosen) {
         ->capture_default_str();
     play->add_flag("--wait-for-tiles", options.settings.wait_for_tiles,
                    "Of a populated scene: every frame waits for the tiles it needs, whatever it takes");
+    play->add_flag("--lockstep", command->lockstep,
+                   "Headless: draw a frame for each line FRAME SLOWER of standard input, as coppice compare asks");
     play->add_option("--device", options.device, "Vulkan device, by index or part of its name");
     play->add_flag("--validation", options.validation,
                    "Vulkan's validation layers; any message fails the run");

@@ -24,6 +24,26 @@ std::vector<CameraKey> random_path(uint64_t seed) {
     return path;
 }
 
+TEST(CameraPathText, IsReadBackAsItWas) {
+    std::vector<CameraKey> path = random_path(4);
+    path[3].camera.vertical_fov_rad = 0.5f;
+    path[3].camera.near_m = 0.25f;
+    path[5].camera.pitch_rad = k_pi / 2.0f;
+    path[6].camera.yaw_rad = 4000.0f;  // someone who turned round and round
+    const ScratchFile file("path.json", camera_path_text(path));
+    const auto again = load_camera_path(file.path());
+    ASSERT_TRUE(again) << to_string(again.error());
+    ASSERT_EQ(again->size(), path.size());
+    for (size_t i = 0; i < path.size(); ++i) {
+        const Camera &a = (*again)[i].camera, &b = path[i].camera;
+        EXPECT_EQ((*again)[i].time_s, path[i].time_s);
+        EXPECT_EQ(a.position_world, b.position_world);
+        EXPECT_LT(glm::length(a.forward() - b.forward()), 1e-3f) << i;
+        EXPECT_NEAR(a.vertical_fov_rad, b.vertical_fov_rad, 1e-6f);
+        EXPECT_EQ(a.near_m, b.near_m);
+    }
+}
+
 TEST(CameraAt, PassesTheKeysAndHoldsTheEnds) {
     auto path = random_path(1);
     for (const CameraKey& key : path) {

@@ -21,7 +21,7 @@ void expect_failure(const ProgramResult& result, int exit_code, const std::strin
     EXPECT_NE(result.err.find(word), std::string::npos) << result.err;
 }
 
-const std::vector<std::string> k_subcommands{"cook", "inspect", "play", "bench", "bundle"};
+const std::vector<std::string> k_subcommands{"cook", "inspect", "play", "bench", "compare", "bundle"};
 
 }  // namespace
 

@@ -110,7 +110,7 @@ TEST(Play, LeavesPicturesTablesAndAPage) {
     const std::string csv = read_file(out + "/frames.csv");
     EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 9)
         << "a head and the frames 0 to 8 of one second at 8 Hz";
-    EXPECT_TRUE(csv.starts_with("frame,time_s,wall_ms,"));
+    EXPECT_TRUE(csv.starts_with("frame,repeat,time_s,CPUStartTime,FrameTime,CPUBusy,CPUWait,GPUBusy,"));
 
     const json summary = json::parse(read_file(out + "/summary.json"));
     EXPECT_EQ(figure(summary, "plants"), 9);

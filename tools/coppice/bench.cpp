@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 #include "runtime/core/file.h"
 #include "tools/coppice/bench_accuracy.h"
+#include "tools/coppice/bench_compare.h"
 #include "tools/coppice/bench_cook.h"
 #include "tools/coppice/bench_ecs.h"
 #include "tools/coppice/bench_foliage.h"
@@ -84,6 +85,7 @@ const std::vector<Bench>& benches() {
     static const std::vector<Bench> k_benches{
         {"accuracy", "time against error of every method, against a ray-traced reference; a page of curves",
          bench_accuracy},
+        {"compare", "whether coppice compare finds a slowdown of 10 % and passes a program against itself", bench_compare},
         {"cook", "sampling of an oak, whole cooks of oak and pine, the same bytes on 1 and 2 threads",
          bench_cook},
         {"ecs", "a million entities in tiles of 1,000: create, destroy, iterate, find",
@@ -135,6 +137,9 @@ void add_bench(CLI::App& app, Command& chosen) {
     bench->add_option(
         "--out", command->settings.out,
         "accuracy, foliage, scale: folder for the page. Default: out/accuracy-SCENE, out/foliage, out/scale");
+    bench->add_option("--comparisons", command->settings.comparisons, "compare: how many of each kind")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
     bench->add_flag("--strict", command->strict, "Exit with 1 where a figure does not hold");
     bench->callback([command, &chosen] { chosen = [command] { return run(*command); }; });
 }

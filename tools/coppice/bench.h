@@ -19,6 +19,7 @@ struct BenchSettings {
     std::string methods;           // names or parts of them, with ; between; empty: all
     std::string size = "795x700";  // of the pictures
     std::string out;               // folder
+    uint32_t comparisons = 20;     // of `compare`, of each kind
 };
 
 struct Bench {

@@ -14,6 +14,7 @@ void add_inspect(CLI::App& app, Command& chosen);
 void add_play(CLI::App& app, Command& chosen);
 void add_populate(CLI::App& app, Command& chosen);
 void add_bench(CLI::App& app, Command& chosen);
+void add_compare(CLI::App& app, Command& chosen);
 void add_bundle(CLI::App& app, Command& chosen);
 
 }  // namespace coppice

@@ -54,6 +54,7 @@ int run(int argc, char** argv) {
     add_play(app, chosen);
     add_populate(app, chosen);
     add_bench(app, chosen);
+    add_compare(app, chosen);
     add_bundle(app, chosen);
 
     const std::vector<std::string> names = subcommand_names(app);

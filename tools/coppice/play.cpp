@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include "tools/coppice/command.h"
 #include "tools/coppice/play_host.h"
+#include "tools/coppice/play_lockstep.h"
 #include "tools/coppice/play_loop.h"
 #include "tools/coppice/play_report.h"
 #include "tools/coppice/play_window.h"
@@ -23,6 +24,11 @@ Examples:
       also draws some of the frames with every triangle, and prints both times
   coppice play content/scenes/pines.eco.json --headless 795x700 --out out/p --frames 90 --pictures 0,45,89
       the first 90 frames, pictures of three of them
+  coppice play content/scenes/pines.eco.json --record out/walk.json
+      fly in the window; what was flown is --path out/walk.json from then on
+  coppice play content/scenes/pines.eco.json --headless 795x700 --repeats 3 --out out/p
+    --budget frame=50ms,memory=512MiB,vertices=2000000 --golden goldens/pines
+      a gate for a build machine: exit code 1 where a budget or a picture is not kept
   coppice populate content/scenes/landscape.eco.json -o out/landscape
   coppice play out/landscape
       the same landscape, read while it is flown over
@@ -31,12 +37,18 @@ Examples:
   coppice play tree.glb
       any plant, with a grove of it behind, from where it fills the picture to where it is 20 pixels tall)";
 
+std::string describe_budgets() {
+    std::string text = "What the flight may take; exit code 1 where it took more:";
+    for (const BudgetKind& kind : budget_kinds()) text += fmt::format("\n{}: {} ({})", kind.name, kind.what, kind.unit);
+    return text;
+}
+
 struct PlayCommand {
     PlayOptions options;
     std::string headless;
     float sample_distance_px = 0.0f;
-    std::string sun;
-    bool full = false;
+    std::string sun, budgets;
+    bool full = false, lockstep = false;
 };
 
 // Found out before the work, not after it.
@@ -70,21 +82,29 @@ Status run(PlayCommand command) {
                         "add --headless 1280x720 --out DIR");
         return play_in_window(options);
     }
+    if (!options.record.empty())
+        return fail(ErrorId::usage, "", "--record", "there is nobody to fly without a window", "leave out --headless");
     COPPICE_CHECK(parse_size("--headless", command.headless, options.width, options.height));
     COPPICE_CHECK(chosen_frames(options.pictures, 1));
+    if (options.golden.update && options.golden.folder.empty())
+        return fail(ErrorId::usage, "", "--golden-update", "no folder of goldens", "name it with --golden FOLDER");
+    COPPICE_TRY(options.budgets, parse_budgets(command.budgets));
+    for (const Budget& budget : options.budgets)
+        options.compare_full |= std::string_view(budget.kind.name) == "error";
+    if (options.golden.update) COPPICE_CHECK(make_folder(options.golden.folder));
     if (!options.out.empty()) COPPICE_CHECK(make_folder(options.out));
     COPPICE_TRY(std::unique_ptr<PlayHost> host, PlayHost::create(options));
+    if (command.lockstep) return play_in_lockstep(*host, options);
     COPPICE_TRY(const PlayRecord record, play_headless(*host, options));
     print_table(record);
     if (!options.out.empty()) {
         COPPICE_CHECK(write_report(record, options.out));
-        fmt::print("{0}/index.html  {0}/summary.json  {0}/frames.csv\n", options.out);
+        fmt::print("{0}/index.html  {0}/summary.json  {0}/frames.csv  {0}/trace.json  {0}/junit.xml\n", options.out);
     }
-    if (record.validation_messages > 0)
-        return fail(ErrorId::regressed, "", "",
-                    fmt::format("{} messages of the validation layers", record.validation_messages),
-                    "there must be none");
-    return {};
+    for (const Check& check : record.checks)
+        fmt::print("  {:<26}{:>16.6g} {:<18}{}\n", check.name, check.value, check.unit,
+                   check.fault.empty() ? std::string("passed") : name_of(check.verdict) + (": " + check.fault));
+    return status_of(record.checks);
 }
 
 }  // namespace
@@ -111,9 +131,21 @@ void add_play(CLI::App& app, Command& chosen) {
         ->capture_default_str();
     play->add_option("--pictures", options.pictures, "Frames to keep, as 0,30,60, or how many evenly spread")
         ->capture_default_str();
-    play->add_option("--warmup", options.warmup, "Frames drawn before the first measured one")
+    play->add_option("--warmup", options.warmup, "Frames drawn before the first measured one of each repeat")
         ->check(CLI::Range(0, 1000))
         ->capture_default_str();
+    play->add_option("--repeats", options.repeats, "Headless: fly the path so often")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    play->add_option("--budget", command->budgets, describe_budgets())->type_name("NAME=LIMIT,...");
+    play->add_option("--golden", options.golden.folder,
+                     "Folder of pictures that this run's must agree with; exit code 1 where one does not");
+    play->add_option("--golden-tolerance", options.golden.tolerance,
+                     "Mean FLIP of the square of 16 x 16 pixels that differs most, up to which pictures agree")
+        ->check(CLI::Range(0.0, 1.0))
+        ->capture_default_str();
+    play->add_flag("--golden-update", options.golden.update, "Keep this run's pictures as the goldens");
+    play->add_option("--record", options.record, "Of a window: the path that was flown, for --path, as *.json");
     play->add_option("--sample-distance", command->sample_distance_px,
                      "d' in pixels; smaller draws more. Default: what the scene recommends")
         ->check(CLI::Range(0.01, 1000.0));
@@ -180,6 +212,8 @@ void add_play(CLI::App& app, Command& chosen) {
         ->capture_default_str();
     play->add_flag("--wait-for-tiles", options.settings.wait_for_tiles,
                    "Of a populated scene: every frame waits for the tiles it needs, whatever it takes");
+    play->add_flag("--lockstep", command->lockstep,
+                   "Headless: draw a frame for each line FRAME SLOWER of standard input, as coppice compare asks");
     play->add_option("--device", options.device, "Vulkan device, by index or part of its name");
     play->add_flag("--validation", options.validation,
                    "Vulkan's validation layers; any message fails the run");

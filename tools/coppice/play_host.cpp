@@ -220,10 +220,11 @@ Result<PlayHost::FrameTimes> PlayHost::draw_frame(const Camera& camera, const Fr
     Stopwatch clock;
     COPPICE_TRY(const Frame frame, begin_frame(camera, settings));
     COPPICE_CHECK(ring.submit());
+    const double cpu_ms = clock.ms();
     COPPICE_CHECK(ring.wait(frame.ring.serial));
     const double wall_ms = clock.ms();
     vegetation->set_frame_ms(frame.ring.slot, wall_ms);
-    return FrameTimes{wall_ms, frame.schedule_ms, frame.ring.slot};
+    return FrameTimes{wall_ms, frame.schedule_ms, cpu_ms, frame.ring.slot};
 }
 
 Status PlayHost::finish_times() {

@@ -50,6 +50,7 @@ class PlayHost {
     // One frame, from its start until its picture is complete.
     struct FrameTimes {
         double wall_ms, schedule_ms;
+        double cpu_ms;  // until it was submitted
         uint32_t slot;
     };
     Result<FrameTimes> draw_frame(const Camera& camera, const FrameSettings& settings);

@@ -2,13 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <optional>
 #include <fmt/format.h>
 #include "runtime/core/file.h"
 #include "runtime/core/hash.h"
 #include "runtime/core/log.h"
 #include "runtime/core/progress.h"
+#include "tools/accuracy/flip.h"
+#include "tools/accuracy/metrics.h"
+#include "tools/coppice/allocation_count.h"
+#include "tools/coppice/golden_pictures.h"
+#include "tools/coppice/machine_load.h"
+#include "tools/coppice/play_junit.h"
 #include "tools/coppice/play_page.h"
 #include "tools/coppice/play_report.h"
+#include "tools/coppice/play_trace.h"
 
 namespace coppice {
 namespace {
@@ -27,6 +36,11 @@ double psnr_db(const Picture& picture, const Picture& reference) {
     }
     double mean = sum / (double(picture.rgba.size()) * 0.75);
     return mean > 0.0 ? std::min(99.0, 10.0 * std::log10(255.0 * 255.0 / mean)) : 99.0;
+}
+
+Result<double> mean_flip(const Picture& picture, const Picture& reference) {
+    COPPICE_TRY(const std::vector<float> map, flip_map(decode_srgb(picture), decode_srgb(reference)));
+    return std::accumulate(map.begin(), map.end(), 0.0) / double(map.size());
 }
 
 // images may be null: PPM then.
@@ -107,6 +121,7 @@ Result<ComparedFrame> compare_with_full(PlayHost& host, const Camera& camera, co
     compared.full_triangles = host.vegetation->report().triangles;
     COPPICE_TRY(Picture full_picture, host.read_picture());
     compared.psnr_db = psnr_db(lod_picture, full_picture);
+    COPPICE_TRY(compared.flip, mean_flip(lod_picture, full_picture));
     COPPICE_CHECK(host.draw_frame(camera, settings));  // what follows finds its data as it would have
     return compared;
 }
@@ -119,6 +134,7 @@ PlayRecord describe(const PlayHost& host, const PlayOptions& options) {
     record.width = host.width;
     record.height = host.height;
     record.fps = options.fps;
+    record.repeats = options.repeats;
     record.settings = options.settings;
     record.settings.sample_distance_px = options.sample_distance_px.value_or(host.scene.sample_distance_px);
     record.machine = describe_machine();
@@ -155,26 +171,36 @@ Result<PlayRecord> play_headless(PlayHost& host, const PlayOptions& options) {
         log_note("the images plugin is not installed: pictures are written as PPM");
 
     PassTimes pass_times(host, record);
-    for (uint32_t i = 0; i < options.warmup; ++i) {
-        COPPICE_TRY(PlayHost::FrameTimes times,
-                    host.draw_frame(camera_at(host.scene.camera_path, 0.0), settings));
-        if (i == 0) host.load.first_frame_ms = times.wall_ms;
-    }
-    record.load = host.load;
-
-    Progress progress("flying", frame_count);
-    record.frames.reserve(frame_count);
-    for (uint32_t i = 0; i < frame_count; ++i) {
-        const double time_s = double(i) / options.fps;
-        const Camera camera = camera_at(host.scene.camera_path, time_s);
-        COPPICE_TRY(PlayHost::FrameTimes times, host.draw_frame(camera, settings));
-        pass_times.expect(times.slot, record.frames.size());
-        record.frames.push_back({i, time_s, times.wall_ms, times.schedule_ms, {}, host.vegetation->report()});
-        const bool kept = is_in(picture_frames, i), compared = is_in(compared_frames, i);
-        if (kept || compared) {
+    Progress progress("flying", uint64_t(frame_count) * options.repeats);
+    record.frames.reserve(size_t(frame_count) * options.repeats);
+    std::optional<MachineLoad> machine_load;
+    Stopwatch since_start;
+    for (uint32_t repeat = 0; repeat < options.repeats; ++repeat) {
+        for (uint32_t i = 0; i < options.warmup; ++i) {
+            COPPICE_TRY(PlayHost::FrameTimes times,
+                        host.draw_frame(camera_at(host.scene.camera_path, 0.0), settings));
+            if (i == 0 && repeat == 0) host.load.first_frame_ms = times.wall_ms;
+        }
+        if (repeat == 0) {
+            machine_load.emplace();
+            since_start = {};
+        }
+        for (uint32_t i = 0; i < frame_count; ++i) {
+            const double time_s = double(i) / options.fps, start_ms = since_start.ms();
+            const Camera camera = camera_at(host.scene.camera_path, time_s);
+            const uint64_t allocations = allocation_count();
+            COPPICE_TRY(PlayHost::FrameTimes times, host.draw_frame(camera, settings));
+            pass_times.expect(times.slot, record.frames.size());
+            record.frames.push_back({i, time_s, times.wall_ms, times.schedule_ms, {}, host.vegetation->report(), repeat,
+                                     start_ms, times.cpu_ms, allocation_count() - allocations});
+            progress.advance();
+            const bool kept = is_in(picture_frames, i), compared = is_in(compared_frames, i);
+            if (repeat > 0 || (!kept && !compared)) continue;
             COPPICE_TRY(Picture picture, host.read_picture());
             if (kept) {
                 COPPICE_TRY(PlayPicture one, keep_picture(images, options, i, picture));
+                if (!options.golden.folder.empty())
+                    COPPICE_CHECK(check_golden(options.golden, images, picture, one, options.out, record));
                 record.pictures.push_back(std::move(one));
             }
             if (compared) {
@@ -183,15 +209,19 @@ Result<PlayRecord> play_headless(PlayHost& host, const PlayOptions& options) {
                 record.compared.push_back(one);
             }
         }
-        progress.advance();
     }
+    record.load = host.load;
+    record.others_share = machine_load ? machine_load->others_share() : 0.0;
     COPPICE_CHECK(host.finish_times());
     for (FrameRecord& frame : record.frames) frame.pass_ms.resize(record.passes.size(), 0.0);
     record.scene_triangles = record.frames.back().report.scene_triangles;
     record.validation_messages = host.device->validation_messages();
+    record.streamed = host.vegetation->report().stream_bytes_read > 0;
     // Of a populated scene the world holds what happened to be near.
-    if (host.vegetation->report().stream_bytes_read == 0)
-        record.hashes.emplace_back("world", host.world.hash());
+    if (!record.streamed) record.hashes.emplace_back("world", host.world.hash());
+    record.peak_memory_bytes = peak_memory_bytes();
+    const std::vector<Check> checks = check_playthrough(record, options.budgets);
+    record.checks.insert(record.checks.begin(), checks.begin(), checks.end());
     return record;
 }
 
@@ -200,6 +230,8 @@ Status write_report(const PlayRecord& record, const std::string& out) {
     const auto replace = nlohmann::json::error_handler_t::replace;
     COPPICE_CHECK(
         write_text_file(out + "/summary.json", play_summary(record).dump(2, ' ', false, replace) + "\n"));
+    COPPICE_CHECK(write_text_file(out + "/trace.json", chrome_trace(record)));
+    COPPICE_CHECK(write_text_file(out + "/junit.xml", junit_xml(record)));
     return write_text_file(out + "/index.html", play_page(record));
 }
 

@@ -7,6 +7,8 @@
 #include "plugins/vegetation/lod/settings.h"
 #include "runtime/core/math.h"
 #include "runtime/core/result.h"
+#include "tools/coppice/golden_pictures.h"
+#include "tools/coppice/play_check.h"
 
 namespace coppice {
 
@@ -18,13 +20,17 @@ struct PlayOptions {
     std::string out;                          // folder; empty: no files
     uint32_t frames = 0;                      // 0: the whole path
     double fps = 30.0;                        // fixed step: the same frames on every machine
-    uint32_t warmup = 5;                      // frames drawn before the first measured one
+    uint32_t warmup = 5;                      // frames drawn before the first measured one of each repeat
+    uint32_t repeats = 1;                     // flights of the path
     std::string pictures = "4";               // see chosen_frames()
     std::optional<float> sample_distance_px;  // empty: what the scene recommends
     std::optional<vec2> sun_deg;              // azimuth and elevation; empty: the scene's own sun
     FrameSettings settings;
     bool compare_full = false;
     uint32_t compare_frames = 5;
+    std::vector<Budget> budgets;
+    GoldenSettings golden;
+    std::string record;  // of a window: file for the path that was flown; empty: none
     std::string device;
     bool validation = false;
     std::string cache_dir;  // of packed plants; empty: the user's cache folder

@@ -5,6 +5,7 @@
 #include <span>
 #include <fmt/format.h>
 #include "runtime/core/hash.h"
+#include "tools/coppice/frame_pace.h"
 #include "tools/coppice/page_style.h"
 #include "tools/coppice/page_text.h"
 #include "tools/coppice/play_options.h"
@@ -63,6 +64,11 @@ std::string cards(const PlayRecord& record) {
     html += card(fmt::format("{:.1f} ms", median_ms),
                  fmt::format("a frame, median: {:.0f} frames a second", 1000.0 / median_ms));
     html += card(fmt::format("{:.1f} ms", quantile(wall, 0.95)), "or less for 95 % of the frames");
+    const FramePace pace = measure_pace(wall);
+    html += card(
+        fmt::format("{:.1f} Hz", pace.low_1_percent_as_p99_hz),
+        fmt::format("1 % low as the p99 frame time; {:.1f} Hz as the mean of the slowest 1 %; {} hitches",
+                    pace.low_1_percent_as_mean_hz, pace.hitches));
     html += card(short_count(median(vertices)),
                  fmt::format("vertices drawn a frame, for {} triangles in view", short_count(median(full))));
     html += card(short_count(double(record.scene_triangles)),
@@ -137,6 +143,30 @@ std::string compared_table(const PlayRecord& record) {
     return html + "</table>\n";
 }
 
+std::string checks_table(const PlayRecord& record) {
+    if (record.checks.empty()) return {};
+    std::string html =
+        "<h2>Checks</h2>\n<table><tr><th>check</th><th>verdict</th><th>found</th><th>limit</th></tr>\n";
+    for (const Check& check : record.checks)
+        html += fmt::format("<tr><td>{}</td><td>{}{}</td><td>{:.6g} {}</td><td>{:g}</td></tr>\n",
+                            escape_html(check.name), name_of(check.verdict),
+                            check.fault.empty() ? "" : ": " + escape_html(check.fault), check.value,
+                            escape_html(check.unit), check.limit);
+    html += "</table>\n";
+    if (record.differences.empty()) return html;
+    html +=
+        "<p class=\"soft\">Where pictures differ from their goldens: FLIP of each pixel, white is most.</p>\n"
+        "<div class=\"pictures\">\n";
+    for (const PlayPicture& difference : record.differences) html += figure(difference, "");
+    return html + "</div>\n";
+}
+
+// Where frames lie in the plots: one repeat behind the other.
+double plotted_time_s(const PlayRecord& record, const FrameRecord& frame) {
+    const double repeat_s = double(record.frames.size()) / record.repeats / std::max(record.fps, 1e-9);
+    return frame.time_s + frame.repeat * repeat_s;
+}
+
 std::string facts_table(const PlayRecord& record) {
     std::string html = "<table>\n";
     auto row = [&html](const std::string& name, const std::string& value) {
@@ -151,7 +181,10 @@ std::string facts_table(const PlayRecord& record) {
     row("system", machine.system);
     row("program", fmt::format("Coppice {}, {}, {}", COPPICE_VERSION, machine.build, machine.compiler));
     row("picture", fmt::format("{} x {}", record.width, record.height));
-    row("flight", fmt::format("{} frames, {:g} a second of flight", record.frames.size(), record.fps));
+    row("flight",
+        fmt::format("{} frames, {:g} a second of flight{}", record.frames.size() / record.repeats, record.fps,
+                    record.repeats > 1 ? fmt::format(", {} times", record.repeats) : ""));
+    row("other programs", fmt::format("{:.0f} % of the processors meanwhile", 100.0 * record.others_share));
     row("sample distance d'", fmt::format("{:g} px", record.settings.sample_distance_px));
     row("splat factor c_p", fmt::format("{:g}", record.settings.splat_factor));
     row("projection", name_of(record.settings.projection));
@@ -173,7 +206,7 @@ std::string facts_table(const PlayRecord& record) {
 
 std::string play_page(const PlayRecord& record) {
     std::vector<double> time_s;
-    for (const FrameRecord& frame : record.frames) time_s.push_back(frame.time_s);
+    for (const FrameRecord& frame : record.frames) time_s.push_back(plotted_time_s(record, frame));
     const std::string name = escape_html(record.scene_name);
     std::string html = fmt::format(
         "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
@@ -187,6 +220,7 @@ std::string play_page(const PlayRecord& record) {
         name, k_page_style, record.frames.size(), record.width, record.height, escape_html(record.device));
     if (!record.pictures.empty()) html += figure(middle_picture(record), "hero");
     html += cards(record);
+    html += checks_table(record);
     html +=
         "<h2>Time of a frame</h2>\n<p class=\"soft\">From the start of a frame until its picture was "
         "complete, "
@@ -207,7 +241,7 @@ std::string play_page(const PlayRecord& record) {
     html += "<h2>Machine, settings, hashes</h2>\n" + facts_table(record);
     html += "<h2>Again</h2>\n<p><code>" + escape_html(record.command) +
             "</code></p>\n<p class=\"soft\">Every frame's figures are in frames.csv and summary.json beside "
-            "this page."
+            "this page, and in trace.json for chrome://tracing or Perfetto."
             "</p>\n</main></body></html>\n";
     return html;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include "runtime/plugin/registry.h"
+#include "tools/coppice/flown_path.h"
 #include "tools/coppice/page_text.h"
 #include "tools/coppice/play_host.h"
 #include "tools/coppice/statistics.h"
@@ -113,6 +114,7 @@ Status play_in_window(const PlayOptions& options) {
     settings.sample_distance_px = options.sample_distance_px.value_or(host->scene.sample_distance_px);
     settings.accumulate_limit = k_accumulate_limit;
     Flight flight{camera_at(host->scene.camera_path, 0.0)};
+    FlownPath flown;
     std::vector<double> recent_ms;
     size_t frame_index = 0;
     bool help = false;
@@ -120,7 +122,7 @@ Status play_in_window(const PlayOptions& options) {
     double last_ms = clock.ms();
     for (;;) {
         const Input input = window->poll();
-        if (input.close_requested || was_pressed(input, Key::escape)) return {};
+        if (input.close_requested || was_pressed(input, Key::escape)) break;
         const uint32_t width = window->width_px(), height = window->height_px();
         if (width == 0 || height == 0) {  // minimised: draw nothing
             window->wait_events();
@@ -136,6 +138,7 @@ Status play_in_window(const PlayOptions& options) {
         help ^= was_pressed(input, Key::f1);
         change_settings(settings, input);
         fly(flight, input, host->scene.camera_path, float(std::min(step_ms, 250.0) * 1e-3));
+        if (!options.record.empty()) flown.add(now_ms * 1e-3, flight.camera);
 
         COPPICE_TRY(PlayHost::Frame frame, host->begin_frame(flight.camera, settings));
         COPPICE_CHECK(
@@ -145,6 +148,7 @@ Status play_in_window(const PlayOptions& options) {
             title_clock = {};
         }
     }
+    return options.record.empty() ? Status() : flown.write(options.record);
 }
 
 }  // namespace coppice

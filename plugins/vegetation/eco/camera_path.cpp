@@ -10,8 +10,6 @@
 namespace coppice {
 namespace {
 
-constexpr size_t k_key_limit = 100000;
-
 // What a path interpolates: x, y, z, yaw, pitch, field of view, near.
 using Pose = std::array<double, 7>;
 
@@ -135,6 +133,22 @@ Result<std::vector<CameraKey>> load_camera_path(const std::string& path, const G
     if (keys.empty()) root.report(ErrorId::syntax, "keys", "no key", "write at least one key");
     COPPICE_CHECK(document.status());
     return keys;
+}
+
+std::string camera_path_text(const std::vector<CameraKey>& keys) {
+    constexpr double k_degrees = 180.0 / 3.14159265358979323846;
+    nlohmann::json list = nlohmann::json::array();
+    for (const CameraKey& key : keys) {
+        const Camera& camera = key.camera;
+        const dvec3& at = camera.position_world;
+        list.push_back({{"time_s", key.time_s},
+                        {"at", {at.x, at.y, at.z}},
+                        {"yaw_deg", std::remainder(camera.yaw_rad * k_degrees, 360.0)},
+                        {"pitch_deg", std::clamp(camera.pitch_rad * k_degrees, -90.0, 90.0)},
+                        {"fov_deg", camera.vertical_fov_rad * k_degrees},
+                        {"near_m", camera.near_m}});
+    }
+    return nlohmann::json{{"keys", std::move(list)}}.dump(1) + "\n";
 }
 
 Result<std::vector<CameraKey>> read_camera_path(JsonObject& root, const std::filesystem::path& folder,

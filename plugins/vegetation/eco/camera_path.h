@@ -14,6 +14,11 @@ namespace coppice {
 Result<std::vector<CameraKey>> load_camera_path(const std::string& path, const GroundHeight& ground);
 Result<std::vector<CameraKey>> load_camera_path(const std::string& path, const Terrain* terrain = nullptr);
 
+// Such a file's text: load_camera_path gives the keys back, up to the rounding of angles from radians to degrees. Requires
+// what it asks for: at most k_key_limit keys, times that grow.
+std::string camera_path_text(const std::vector<CameraKey>& keys);
+inline constexpr size_t k_key_limit = 100000;
+
 // The list of keys inside a scene; faults go to the document.
 std::vector<CameraKey> read_camera_keys(std::vector<JsonObject> keys, const GroundHeight& ground);
 

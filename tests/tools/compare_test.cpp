@@ -1,0 +1,168 @@
+// Whether a difference is one: the rank tests against counting by hand, verdicts, reports, two programs in turn.
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include "runtime/core/random.h"
+#include "tests/tools/run_program.h"
+#include "tools/coppice/comparison.h"
+#include "tools/coppice/compare_folders.h"
+#include "tools/coppice/rank_tests.h"
+
+using namespace coppice;
+using nlohmann::json;
+
+namespace {
+
+// A report of flights whose frames take these times, all alike within a repeat.
+std::string write_report(const std::string& folder, const std::vector<double>& repeat_ms, int vertices = 1000,
+                         const std::string& processor = "a processor") {
+    std::filesystem::create_directories(folder);
+    std::ofstream(folder + "/summary.json")
+        << json{{"settings", {{"width", 64}, {"repeats", repeat_ms.size()}}},
+                {"scene", {{"name", "meadow"}}},
+                {"machine", {{"processor", processor}}}};
+    std::ofstream csv(folder + "/frames.csv");
+    csv << "frame,repeat,FrameTime,vertices\n";
+    for (size_t repeat = 0; repeat < repeat_ms.size(); ++repeat)
+        for (int frame = 0; frame < 3; ++frame)
+            csv << frame << ',' << repeat << ',' << repeat_ms[repeat] << ',' << vertices << '\n';
+    return folder;
+}
+
+}  // namespace
+
+TEST(RankTests, AgreeWithCountingByHand) {
+    // Six positive differences: 2 of 2^6 ways of signs are as lopsided.
+    EXPECT_NEAR(signed_rank_p(std::vector<double>{1, 2, 3, 4, 5, 6}), 2.0 / 64.0, 1e-12);
+    // The smallest is negative: sums 0 and 1 of the minority, on both sides.
+    EXPECT_NEAR(signed_rank_p(std::vector<double>{-1, 2, 3, 4, 5, 6}), 4.0 / 64.0, 1e-12);
+    EXPECT_NEAR(signed_rank_p(std::vector<double>{1, -1, 0}), 1.0, 1e-12);
+    EXPECT_EQ(signed_rank_p({}), 1.0);
+    // Two groups of five that do not overlap: 2 of 252 choices.
+    EXPECT_NEAR(rank_sum_p(std::vector<double>{1, 2, 3, 4, 5}, std::vector<double>{6, 7, 8, 9, 10}),
+                2.0 / 252.0, 1e-12);
+    EXPECT_NEAR(rank_sum_p(std::vector<double>{1, 1, 1}, std::vector<double>{1, 1, 1}), 1.0, 1e-12);
+    // 1 3 against 2 4: rank sums 3 to 7 of six choices, 4 and 6 and beyond are as far from 5.
+    EXPECT_NEAR(rank_sum_p(std::vector<double>{1, 3}, std::vector<double>{2, 4}), 4.0 / 6.0, 1e-12);
+}
+
+TEST(RankTests, FindNothingInNoiseAsOftenAsTheySay) {
+    Random random(7);
+    int paired = 0, grouped = 0;
+    constexpr int k_trials = 2000;
+    for (int trial = 0; trial < k_trials; ++trial) {
+        std::vector<double> differences(15), a(8), b(8);
+        for (double& value : differences) value = random.next_in(-1, 1);
+        for (double& value : a) value = random.next_in(0, 1);
+        for (double& value : b) value = random.next_in(0, 1);
+        paired += signed_rank_p(differences) < 0.05;
+        grouped += rank_sum_p(a, b) < 0.05;
+    }
+    // Exact tests err on the side of finding nothing; four standard deviations above 5 %.
+    EXPECT_LT(paired, 0.07 * k_trials);
+    EXPECT_LT(grouped, 0.07 * k_trials);
+    EXPECT_GT(paired, 0.02 * k_trials);
+    EXPECT_GT(grouped, 0.02 * k_trials);
+}
+
+TEST(RankTests, EstimateTheShift) {
+    EXPECT_EQ(shift_of(std::vector<double>{1, 2, 3, 100}), 2.75);
+    EXPECT_EQ(shift_between(std::vector<double>{1, 2, 3}, std::vector<double>{11, 12, 13}), 10.0);
+}
+
+TEST(Comparison, NeedsRareAndLargeEnough) {
+    const double more = std::log(1.1), little = std::log(1.01);
+    Comparison comparison;
+    comparison.floor_share = 0.03;
+    std::vector<double> ratios(20, 0.0);
+    for (size_t i = 0; i < ratios.size(); ++i) ratios[i] = more + 0.001 * double(i % 5);
+    comparison.effect = effect_of_pairs(ratios);
+    EXPECT_EQ(speed_of(comparison), Speed::slower);
+    EXPECT_NEAR(comparison.effect.share, 0.102, 0.001);
+    for (double& ratio : ratios) ratio = -ratio;
+    comparison.effect = effect_of_pairs(ratios);
+    EXPECT_EQ(speed_of(comparison), Speed::faster);
+    EXPECT_TRUE(status_of(comparison));
+    for (size_t i = 0; i < ratios.size(); ++i) ratios[i] = little + 0.001 * double(i % 5);
+    comparison.effect = effect_of_pairs(ratios);
+    EXPECT_LT(comparison.effect.chance, k_chance) << "sure, but";
+    EXPECT_EQ(speed_of(comparison), Speed::same) << "below the floor";
+    for (size_t i = 0; i < ratios.size(); ++i) ratios[i] = i % 2 ? 5.0 * more : -4.0 * more;
+    comparison.effect = effect_of_pairs(ratios);
+    EXPECT_EQ(speed_of(comparison), Speed::same) << "noise";
+    comparison.itself = {0.05, 0.001};
+    EXPECT_EQ(speed_of(comparison), Speed::inconclusive);
+    EXPECT_EQ(exit_code_of(status_of(comparison).error().id), 4);
+}
+
+TEST(Comparison, CountsAreGatesWhateverTheTimes) {
+    const std::map<std::string, double> base{{"points", 1000}, {"allocations", 10}, {"tiles", 5}};
+    auto grew = [&](const std::map<std::string, double>& again,
+                    const std::map<std::string, double>& changed) {
+        std::string names;
+        for (const CountChange& change : compare_counts(base, again, changed, 0.03))
+            if (change.grew) names += change.name + " ";
+        return names;
+    };
+    EXPECT_EQ(grew(base, base), "");
+    EXPECT_EQ(grew(base, {{"points", 1020}, {"allocations", 10}, {"tiles", 1}, {"new", 7}}), "");
+    EXPECT_EQ(grew(base, {{"points", 1040}, {"allocations", 10}}), "points ");
+    EXPECT_EQ(grew({}, {{"allocations", 11}}), "allocations ");
+    EXPECT_EQ(grew({{"allocations", 11}}, {{"allocations", 11}}), "") << "it varies by itself";
+    Comparison comparison;
+    comparison.itself = {0.5, 0.0};
+    comparison.counts = {{"points", 1, 2, true}};
+    EXPECT_EQ(exit_code_of(status_of(comparison).error().id), 1);
+}
+
+TEST(CompareFolders, TellsRepeatsApart) {
+    const std::string folder = fresh_folder();
+    const std::string base = write_report(folder + "/base", {10.0, 10.1, 10.2, 10.05, 10.15}),
+                      slow = write_report(folder + "/slow", {11.0, 11.1, 11.2, 11.05, 11.15}),
+                      noisy = write_report(folder + "/noisy", {10, 15, 10.5, 14, 9}),
+                      few = write_report(folder + "/few", {10, 10.1}),
+                      more = write_report(folder + "/more", {10.0, 10.1, 10.2, 10.05, 10.15}, 1100),
+                      elsewhere = write_report(folder + "/elsewhere", {11.0, 11.1, 11.2, 11.05, 11.15}, 1000,
+                                               "another");
+    const auto compare = [](const std::string& a, const std::string& b) {
+        return run_coppice({"compare", a, b});
+    };
+    EXPECT_EQ(compare(base, base).exit_code, 0);
+    EXPECT_EQ(compare(base, slow).exit_code, 1);
+    EXPECT_EQ(compare(slow, base).exit_code, 0) << "faster";
+    EXPECT_EQ(compare(noisy, slow).exit_code, 4) << "base would not pass against itself";
+    EXPECT_EQ(compare(base, elsewhere).exit_code, 4) << "times of two machines";
+    EXPECT_EQ(compare(base, more).exit_code, 1) << "10 % more vertices";
+    EXPECT_EQ(compare(base, few).exit_code, 2);
+    std::ofstream(folder + "/slow/frames.csv") << "frame,repeat,FrameTime\n0,0,eleven\n";
+    const ProgramResult broken = compare(base, slow);
+    EXPECT_EQ(broken.exit_code, 2);
+    EXPECT_NE(broken.err.find("line 2"), std::string::npos) << broken.err;
+}
+
+TEST(ComparePrograms, CountsAgreeAndAMissingProgramIsNamed) {
+    const std::string folder = fresh_folder(),
+                      scene = std::string(COPPICE_SOURCE_DIR) + "/content/species/daisy.json";
+    const ProgramResult result =
+        run_coppice({"compare", COPPICE_PROGRAM, COPPICE_PROGRAM, "--scene", scene, "--headless", "64x48",
+                     "--seconds", "1", "--floor", "100", "--json", folder + "/comparison.json"},
+                    {"XDG_CACHE_HOME=" + folder});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    std::ifstream stream(folder + "/comparison.json");
+    const json comparison = json::parse(stream);
+    EXPECT_GE(comparison.at("samples"), 12);
+    EXPECT_GT(comparison.at("base_ms"), 0.0);
+    for (const json& count : comparison.at("counts"))
+        EXPECT_EQ(count.at("name"), "allocations") << "the same program draws the same: " << count;
+    const ProgramResult missing =
+        run_coppice({"compare", COPPICE_PROGRAM, folder + "/nothing", "--scene", scene});
+    EXPECT_EQ(missing.exit_code, 2);
+    EXPECT_NE(missing.err.find("nothing"), std::string::npos) << missing.err;
+    EXPECT_EQ(run_coppice({"compare", COPPICE_PROGRAM, COPPICE_PROGRAM}).exit_code, 2) << "no scene";
+    EXPECT_EQ(
+        run_coppice({"compare", COPPICE_PROGRAM, "/bin/true", "--scene", scene}, {"XDG_CACHE_HOME=" + folder})
+            .exit_code,
+        1)
+        << "a program that says nothing";
+}

@@ -2,6 +2,7 @@
 
 #include <imgui.h>
 #include <backends/imgui_impl_vulkan.h>
+#include "runtime/gpu/vulkan.h"
 
 namespace coppice {
 namespace {

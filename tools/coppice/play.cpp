@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <unistd.h>
 #include <fmt/format.h>
 #include "tools/coppice/command.h"
@@ -37,6 +38,7 @@ struct PlayCommand {
     float sample_distance_px = 0.0f;
     std::string sun;
     bool full = false;
+    std::optional<uint32_t> explained_frame;
 };
 
 // Found out before the work, not after it.
@@ -56,6 +58,14 @@ void print_table(const PlayRecord& record) {
         fmt::print("  {:<26}{:>16.6g} {}\n", figure.name, figure.value, figure.unit);
 }
 
+// Drawn once more, so that the flight is as without it.
+Status print_explanation(PlayHost& host, const PlayRecord& record, uint32_t frame) {
+    const Camera camera = camera_at(host.scene.camera_path, double(frame) / record.fps);
+    COPPICE_CHECK(host.draw_frame(camera, record.settings));
+    fmt::print("\nframe {}\n{}", frame, to_text(host.vegetation->explain_frame()));
+    return {};
+}
+
 Status run(PlayCommand command) {
     PlayOptions& options = command.options;
     options.settings.level_of_detail = !command.full;
@@ -65,6 +75,8 @@ Status run(PlayCommand command) {
     }
     options.headless = !command.headless.empty();
     if (!options.headless) {
+        if (command.explained_frame)
+            return fail(ErrorId::usage, "", "--explain", "frames of a window have no numbers", "add --headless 1280x720");
         if (!window_available())
             return fail(ErrorId::usage, "", "", "there is no display to open a window on",
                         "add --headless 1280x720 --out DIR");
@@ -76,6 +88,7 @@ Status run(PlayCommand command) {
     COPPICE_TRY(std::unique_ptr<PlayHost> host, PlayHost::create(options));
     COPPICE_TRY(const PlayRecord record, play_headless(*host, options));
     print_table(record);
+    if (command.explained_frame) COPPICE_CHECK(print_explanation(*host, record, *command.explained_frame));
     if (!options.out.empty()) {
         COPPICE_CHECK(write_report(record, options.out));
         fmt::print("{0}/index.html  {0}/summary.json  {0}/frames.csv\n", options.out);
@@ -168,6 +181,8 @@ void add_play(CLI::App& app, Command& chosen) {
                      "Metres along the view up to which shadows are seen")
         ->check(CLI::Range(1.0, 1e6))
         ->capture_default_str();
+    play->add_option("--explain", command->explained_frame,
+                     "With --headless: says of this frame what was drawn, at which level, why, and what spent the budget");
     play->add_flag("--full", command->full, "Every triangle: no level of detail");
     play->add_flag("--compare-full", options.compare_full,
                    "Also draw some of the frames with every triangle, in the same run");

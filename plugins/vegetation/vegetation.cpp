@@ -26,6 +26,7 @@
 #include "plugins/vegetation/draw/tile_residency.h"
 #include "plugins/vegetation/lod/learn_cost.h"
 #include "plugins/vegetation/lod/rest.h"
+#include "plugins/vegetation/report/explain_frame.h"
 #include "runtime/core/log.h"
 
 namespace coppice {
@@ -70,6 +71,7 @@ class VegetationSystems final : public Vegetation {
         for (const TileNode& tile : tree) source.clouds.push_back(&tile.cloud);
         COPPICE_TRY(SceneGeometry geometry, gather_geometry(source));
         COPPICE_CHECK(show(std::move(geometry), std::move(grounds), scene.light));
+        models_ = scene.models;
         return add_tiles(scene, tree);
     }
 
@@ -85,6 +87,7 @@ class VegetationSystems final : public Vegetation {
         source.streamed_clouds = forest.packs.empty() ? 0 : TileResidency::cloud_count(settings);
         COPPICE_TRY(SceneGeometry geometry, gather_geometry(source));
         COPPICE_CHECK(show(std::move(geometry), std::move(grounds), forest.light));
+        models_ = forest.models;
         COPPICE_CHECK(add_rows(forest));
         if (!forest.packs.empty())
             residency_ = std::make_unique<TileResidency>(forest, settings, uint32_t(forest.clouds.size()));
@@ -174,6 +177,11 @@ class VegetationSystems final : public Vegetation {
     ResourceIndex color_resource() const override { return rasteriser_->color_resource(); }
     const gpu::Buffer& visibility() const override { return rasteriser_->visibility(); }
     const FrameReport& report() const override { return report_; }
+    FrameExplanation explain_frame() const override {
+        if (!counted_) return {};
+        return coppice::explain_frame(
+            {tile_list_, frame_plants_, geometry_, frustum_, drawn_, frame_, resting_.index, models_}, report_);
+    }
 
   private:
     Status check_scene(const Scene& scene, size_t plant_count) const {
@@ -340,6 +348,7 @@ class VegetationSystems final : public Vegetation {
         geometry_ = {};
         grounds_.clear();
         report_ = {};
+        counted_ = false;
         scene_triangles_ = 0;
         casters_.forget();
         moved_ = is_new_ = true;
@@ -604,6 +613,7 @@ class VegetationSystems final : public Vegetation {
 
     void count() {
         if (settled_) return;
+        counted_ = true;
         report_.tiles = tile_list_.tile_count;
         report_.tiles_touched = tile_list_.touched_tile_count;
         report_.tiles_expanded = tile_list_.expanded_tile_count;
@@ -655,6 +665,7 @@ class VegetationSystems final : public Vegetation {
     VegetationSettings settings_;
     std::unique_ptr<Rasteriser> rasteriser_;
     SceneGeometry geometry_;
+    std::vector<SceneModel> models_;  // of geometry_, for explain_frame
     std::vector<Ground> grounds_;
     std::vector<ChunkId> chunks_;  // of the tiles, and of each leaf's plants that is not streamed
     static constexpr Tile k_empty_tile{dvec3(0.0), {vec3(0.0f), vec3(0.0f)}, 0};
@@ -716,6 +727,7 @@ class VegetationSystems final : public Vegetation {
     WorkList::Layout layout_;
     uint32_t refused_entries_ = UINT32_MAX;  // a list this long found no memory
     FrameReport report_;
+    bool counted_ = false;  // of a frame of this scene
 };
 
 }  // namespace

@@ -25,6 +25,7 @@
 #include "plugins/vegetation/eco/tile_forest.h"
 #include "plugins/vegetation/lod/settings.h"
 #include "plugins/vegetation/plant/plant.h"
+#include "plugins/vegetation/report/explanation.h"
 #include "plugins/vegetation/report/report.h"
 #include "runtime/ecs/schedule.h"
 #include "runtime/ecs/world.h"
@@ -94,10 +95,13 @@ class Vegetation {
     virtual const gpu::Buffer& visibility() const = 0;
     // Counts of the frame whose schedule ran last.
     virtual const FrameReport& report() const = 0;
+    // What that frame drew, at which level, and why; its sums are the report's. Looks at all it drew once more: for people who
+    // ask, not for every frame. Empty before the first frame of a scene.
+    virtual FrameExplanation explain_frame() const = 0;
 };
 
 inline constexpr const char* k_vegetation_interface = "coppice.vegetation";
-inline constexpr uint32_t k_vegetation_version = 4;
+inline constexpr uint32_t k_vegetation_version = 5;
 
 // For programs that link coppice::vegetation; others have it from the plugin, by name. Requires all four of the settings.
 // Errors: limit_exceeded, device_lost.

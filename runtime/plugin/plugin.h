@@ -1,7 +1,9 @@
 // The C entry every plugin exports, and the only thing a host and a plugin must agree on before they talk.
 // Rules: structs start with their size, new members go to the end, names of interfaces are strings with a
-// version. A plugin is one shared module with the function `coppice_plugin`.
+// version. Whoever is handed a struct reads no member beyond its size: what was built against an older header of the same
+// ABI keeps working on either side. A plugin is one shared module with the function `coppice_plugin`.
 #pragma once
+#include <stddef.h>
 #include <stdint.h>
 
 #ifdef __cplusplus
@@ -21,6 +23,10 @@ typedef struct CoppiceHost {
     const void* (*find)(void* context, const char* name, uint32_t version);
     // level 0 note, 1 warning, 2 error
     void (*log)(void* context, int level, const char* line);
+    // Calls body(items, first, last) for ranges of at most `grain` that cover [0, count), on the host's threads, and returns
+    // when all are done. Plugins of older hosts: only where size_bytes reaches it.
+    void (*run_jobs)(void* context, size_t count, size_t grain, void (*body)(void* items, size_t first, size_t last),
+                     void* items);
 } CoppiceHost;
 
 typedef struct CoppicePlugin {

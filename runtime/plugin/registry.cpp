@@ -1,10 +1,12 @@
 #include "runtime/plugin/registry.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdlib>
 #include <dlfcn.h>
 #include <filesystem>
 #include <system_error>
+#include "runtime/core/jobs.h"
 #include "runtime/core/log.h"
 
 namespace coppice {
@@ -16,6 +18,8 @@ struct Interface {
     const void* pointer;
 };
 
+// What every plugin's description has, however old the header it was built against.
+constexpr size_t k_first_description_bytes = offsetof(CoppicePlugin, unload) + sizeof(CoppicePlugin::unload);
 const char* const k_abi_remedy = "build the plugin against this version of runtime/plugin/plugin.h";
 
 std::vector<std::filesystem::path> search_folders() {
@@ -72,6 +76,7 @@ struct Registry::Impl {
             host.provide = &Module::provide;
             host.find = &Module::find;
             host.log = &Module::log;
+            host.run_jobs = &Module::run_jobs;
         }
 
         static int provide(void* context, const char* name, uint32_t version, const void* pointer) {
@@ -88,6 +93,9 @@ struct Registry::Impl {
             if (level >= 2) self.last_error = line ? line : "";
             LogLevel as = level <= 0 ? LogLevel::note : level == 1 ? LogLevel::warning : LogLevel::error;
             log_line(as, fmt::format("{}: {}", self.name, line ? line : ""));
+        }
+        static void run_jobs(void*, size_t count, size_t grain, void (*body)(void*, size_t, size_t), void* items) {
+            coppice::run_jobs(count, grain, body, items);
         }
     };
 
@@ -161,10 +169,10 @@ Status Registry::start(const std::string& file) {
         return fail(ErrorId::format_unknown, file, "",
                     fmt::format("plugin ABI {}; this runtime has {}", plugin->abi, COPPICE_PLUGIN_ABI),
                     k_abi_remedy);
-    if (plugin->size_bytes < sizeof(CoppicePlugin) || !plugin->load)
+    if (plugin->size_bytes < k_first_description_bytes || !plugin->load)
         return fail(ErrorId::format_unknown, file, "",
-                    fmt::format("plugin description of {} bytes; this runtime reads {}", plugin->size_bytes,
-                                sizeof(CoppicePlugin)),
+                    fmt::format("plugin description of {} bytes; this runtime reads at least {}", plugin->size_bytes,
+                                k_first_description_bytes),
                     k_abi_remedy);
     int result = plugin->load(&module.host);
     if (result != 0)

@@ -2,6 +2,7 @@
 
 #include <cstdlib>
 #include <gtest/gtest.h>
+#include "runtime/core/jobs.h"
 #include "runtime/core/log.h"
 
 namespace coppice {
@@ -46,6 +47,36 @@ TEST_F(Plugins, provide_interfaces_by_name_and_version) {
     EXPECT_EQ(registry.find<int>("test.number", 3), nullptr);
     EXPECT_EQ(registry.find<int>("test.other", 1), nullptr);
     EXPECT_EQ(log, "0good: is ready\n");
+}
+
+// Built against a header whose structs were shorter (tests/embedding/older).
+TEST_F(Plugins, built_against_an_older_header_keep_working) {
+    {
+        Registry registry;
+        const Status status = registry.load("older");
+        ASSERT_TRUE(status) << to_string(status.error());
+        ASSERT_NE(registry.find<int>("test.older", 1), nullptr);
+        EXPECT_EQ(*registry.find<int>("test.older", 1), 1);
+        EXPECT_EQ(log, "1older: is old\n");
+    }
+    EXPECT_EQ(unloaded(), "older;");
+}
+
+TEST_F(Plugins, run_jobs_on_the_hosts_threads) {
+    static size_t g_counts[2];
+    set_job_runner(
+        [](void* counts, size_t count, size_t grain, JobBody body, void* context) {
+            static_cast<size_t*>(counts)[0] = count;
+            static_cast<size_t*>(counts)[1] = grain;
+            body(context, 0, count);
+        },
+        g_counts);
+    Registry registry;
+    const Status status = registry.load("jobs");
+    set_job_runner(nullptr, nullptr);
+    ASSERT_TRUE(status) << to_string(status.error());
+    EXPECT_EQ(g_counts[0], 1000u);
+    EXPECT_EQ(g_counts[1], 16u);
 }
 
 TEST_F(Plugins, load_once) {

@@ -2,14 +2,25 @@
 #define _POSIX_C_SOURCE 200809L
 #include <stdio.h>
 #include <stdlib.h>
+#ifdef OLDER
+#include "tests/embedding/older/plugin.h"
+#else
 #include "runtime/plugin/plugin.h"
+#endif
 
 #ifndef NO_ENTRY
 
 static const int k_numbers[] = {1, 2};
 
+#ifdef JOBS
+static int g_items[1000];
+static void count_items(void* items, size_t first, size_t last) {
+    for (size_t i = first; i < last; ++i) ++((int*)items)[i];
+}
+#endif
+
 static int load(const CoppiceHost* host) {
-    if (host->size_bytes != sizeof(CoppiceHost) || host->abi != COPPICE_PLUGIN_ABI) return 1;
+    if (host->size_bytes < sizeof(CoppiceHost) || host->abi != COPPICE_PLUGIN_ABI) return 1;
 #if defined(GOOD)
     if (host->provide(host->context, "test.number", 1, &k_numbers[0])) return 2;
     if (host->provide(host->context, "test.number", 2, &k_numbers[1])) return 3;
@@ -25,6 +36,16 @@ static int load(const CoppiceHost* host) {
         return 8;
     }
     if (host->provide(host->context, "test.dependent", 1, &k_numbers[0])) return 9;
+#elif defined(OLDER)
+    if (host->size_bytes == sizeof(CoppiceHost)) return 10;  // the host is newer
+    if (host->provide(host->context, "test.older", 1, &k_numbers[0])) return 11;
+    if (host->find(host->context, "test.older", 1) != &k_numbers[0]) return 12;
+    host->log(host->context, 1, "is old");
+#elif defined(JOBS)
+    (void)k_numbers;
+    host->run_jobs(host->context, 1000, 16, count_items, g_items);
+    for (int i = 0; i < 1000; ++i)
+        if (g_items[i] != 1) return 13;
 #elif defined(FAILS)
     host->provide(host->context, "test.failed", 1, &k_numbers[0]);
     host->log(host->context, 2, "has no tea");

@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <unistd.h>
 #include <fmt/format.h>
 #include "tools/coppice/command.h"
@@ -49,6 +50,7 @@ struct PlayCommand {
     float sample_distance_px = 0.0f;
     std::string sun, budgets;
     bool full = false, lockstep = false;
+    std::optional<uint32_t> explained_frame;
 };
 
 // Found out before the work, not after it.
@@ -68,6 +70,14 @@ void print_table(const PlayRecord& record) {
         fmt::print("  {:<26}{:>16.6g} {}\n", figure.name, figure.value, figure.unit);
 }
 
+// Drawn once more, so that the flight is as without it.
+Status print_explanation(PlayHost& host, const PlayRecord& record, uint32_t frame) {
+    const Camera camera = camera_at(host.scene.camera_path, double(frame) / record.fps);
+    COPPICE_CHECK(host.draw_frame(camera, record.settings));
+    fmt::print("\nframe {}\n{}", frame, to_text(host.vegetation->explain_frame()));
+    return {};
+}
+
 Status run(PlayCommand command) {
     PlayOptions& options = command.options;
     options.settings.level_of_detail = !command.full;
@@ -77,6 +87,8 @@ Status run(PlayCommand command) {
     }
     options.headless = !command.headless.empty();
     if (!options.headless) {
+        if (command.explained_frame)
+            return fail(ErrorId::usage, "", "--explain", "frames of a window have no numbers", "add --headless 1280x720");
         if (!window_available())
             return fail(ErrorId::usage, "", "", "there is no display to open a window on",
                         "add --headless 1280x720 --out DIR");
@@ -97,6 +109,7 @@ Status run(PlayCommand command) {
     if (command.lockstep) return play_in_lockstep(*host, options);
     COPPICE_TRY(const PlayRecord record, play_headless(*host, options));
     print_table(record);
+    if (command.explained_frame) COPPICE_CHECK(print_explanation(*host, record, *command.explained_frame));
     if (!options.out.empty()) {
         COPPICE_CHECK(write_report(record, options.out));
         fmt::print("{0}/index.html  {0}/summary.json  {0}/frames.csv  {0}/trace.json  {0}/junit.xml\n", options.out);
@@ -200,6 +213,8 @@ void add_play(CLI::App& app, Command& chosen) {
                      "Metres along the view up to which shadows are seen")
         ->check(CLI::Range(1.0, 1e6))
         ->capture_default_str();
+    play->add_option("--explain", command->explained_frame,
+                     "With --headless: says of this frame what was drawn, at which level, why, and what spent the budget");
     play->add_flag("--full", command->full, "Every triangle: no level of detail");
     play->add_flag("--compare-full", options.compare_full,
                    "Also draw some of the frames with every triangle, in the same run");

@@ -155,9 +155,6 @@ Status PlayHost::create_vegetation(const PlayOptions& options, std::vector<Plant
     if (!interface)
         return fail(ErrorId::name_unknown, "", "plugin vegetation", "does not provide its interface",
                     "install the plugin of this version");
-    if (options.sun_deg)
-        (forest_ ? forest_->light : scene.light).direction_to_sun =
-            direction_to_sun(options.sun_deg->x, options.sun_deg->y);
     VegetationSettings settings;
     settings.device = device.get();
     settings.world = &world;
@@ -167,15 +164,24 @@ Status PlayHost::create_vegetation(const PlayOptions& options, std::vector<Plant
     settings.width = width = options.width;
     settings.height = height = options.height;
     COPPICE_TRY(vegetation, interface->create(settings));
-    if (options.keep_scene) plants = loaded;
     if (forest_) {
+        if (options.sun_deg)
+            forest_->light.direction_to_sun = direction_to_sun(options.sun_deg->x, options.sun_deg->y);
         const uint64_t budget_bytes = uint64_t(options.tile_memory_mib) << 20;
         COPPICE_CHECK(
             vegetation->set_world(std::move(*forest_), std::move(loaded), {budget_bytes, budget_bytes}));
         forest_.reset();
-        load.upload_ms = clock.ms();
-        return {};
+    } else {
+        COPPICE_CHECK(show_scene(options, std::move(loaded)));
     }
+    load.upload_ms = clock.ms();
+    return {};
+}
+
+Status PlayHost::show_scene(const PlayOptions& options, std::vector<Plant> loaded) {
+    if (options.sun_deg)
+        scene.light.direction_to_sun = direction_to_sun(options.sun_deg->x, options.sun_deg->y);
+    if (options.keep_scene) plants = loaded;
     COPPICE_CHECK(vegetation->set_scene(scene, std::move(loaded)));
     // The world has its own: 32 bytes a plant need not be kept twice.
     plant_count = scene.positions.size();
@@ -185,8 +191,22 @@ Status PlayHost::create_vegetation(const PlayOptions& options, std::vector<Plant
         scene.plant_models = {};
         scene.tiles = {};
     }
-    load.upload_ms = clock.ms();
     return {};
+}
+
+Status PlayHost::reload(const PlayOptions& options) {
+    Scene shown = std::exchange(scene, {});
+    std::vector<std::pair<std::string, uint64_t>> shown_hashes = std::exchange(hashes, {});
+    const Status loaded = [&]() -> Status {
+        COPPICE_CHECK(load_scene_file(options));
+        COPPICE_TRY(std::vector<Plant> again, load_plants(options));
+        return show_scene(options, std::move(again));
+    }();
+    if (!loaded) {
+        scene = std::move(shown);
+        hashes = std::move(shown_hashes);
+    }
+    return loaded;
 }
 
 Result<std::unique_ptr<PlayHost>> PlayHost::create(const PlayOptions& options,

@@ -59,6 +59,9 @@ class PlayHost {
     // Of the last frame drawn.
     Result<Picture> read_picture() const;
     Status resize(uint32_t width_px, uint32_t height_px);
+    // Loads what the options name again, and draws it from the next frame on. On an error what was drawn stays. Not of a
+    // populated folder.
+    Status reload(const PlayOptions& options);
     // Loaded when first asked for, because it brings a hundred libraries along. nullptr where it is not
     // installed.
     const ImagesInterface* find_images();
@@ -91,6 +94,7 @@ class PlayHost {
     Result<std::vector<Plant>> load_plants(const PlayOptions& options);
     Status create_device(const PlayOptions& options, const std::vector<const char*>& present_extensions);
     Status create_vegetation(const PlayOptions& options, std::vector<Plant> loaded);
+    Status show_scene(const PlayOptions& options, std::vector<Plant> loaded);
 };
 
 }  // namespace coppice

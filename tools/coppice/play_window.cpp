@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include "plugins/vegetation/eco/populated_scene.h"
+#include "runtime/core/log.h"
+#include "runtime/core/watched_files.h"
 #include "runtime/plugin/registry.h"
 #include "tools/coppice/flown_path.h"
 #include "tools/coppice/page_text.h"
@@ -17,7 +20,7 @@ constexpr uint32_t k_accumulate_limit = 64;  // frames of a view at rest
 constexpr float k_walk_m_per_s = 4.0f, k_fast_factor = 8.0f;
 constexpr float k_turn_rad_per_px = 0.0025f;
 constexpr float k_pitch_limit_rad = 1.55f;
-constexpr double k_title_interval_ms = 250.0;
+constexpr double k_title_interval_ms = 250.0, k_watch_interval_ms = 500.0;
 constexpr size_t k_averaged_frames = 30;
 
 // Who flies: the scene's path until the user takes over.
@@ -83,6 +86,18 @@ std::string title_of(const PlayHost& host, const FrameSettings& settings, double
         short_count(double(report.points)));
 }
 
+// Plants and scenes that were changed on disk; what is wrong is said, and the old ones stay.
+void reload_changed(PlayHost& host, const PlayOptions& options, WatchedFiles& files) {
+    if (!files.changed()) return;
+    files.begin();
+    const Status loaded = host.reload(options);
+    files.end();
+    if (loaded)
+        log_note("{}: loaded again", options.scene);
+    else
+        log_error("{}; what was loaded before stays", to_string(loaded.error()));
+}
+
 const WindowInterface* find_window(Registry& registry) {
     if (!registry.load("window")) return nullptr;
     return registry.find<WindowInterface>(k_window_interface, k_window_version);
@@ -102,7 +117,12 @@ Status play_in_window(const PlayOptions& options) {
     if (!windows)
         return fail(ErrorId::name_unknown, "", "plugin window", "not installed",
                     "add --headless 1280x720 --out DIR");
-    COPPICE_TRY(std::unique_ptr<PlayHost> host, PlayHost::create(options, windows->instance_extensions()));
+    WatchedFiles files;
+    files.begin();
+    Result<std::unique_ptr<PlayHost>> created = PlayHost::create(options, windows->instance_extensions());
+    files.end();
+    COPPICE_TRY(std::unique_ptr<PlayHost> host, std::move(created));
+    const bool reloads = populated_scene_file(options.scene).empty();
     COPPICE_TRY(std::unique_ptr<Window> window,
                 windows->create({"Coppice: " + host->scene.name, options.width, options.height}));
     COPPICE_CHECK(window->attach(*host->device));
@@ -118,11 +138,15 @@ Status play_in_window(const PlayOptions& options) {
     std::vector<double> recent_ms;
     size_t frame_index = 0;
     bool help = false;
-    Stopwatch clock, title_clock;
+    Stopwatch clock, title_clock, watch_clock;
     double last_ms = clock.ms();
     for (;;) {
         const Input input = window->poll();
         if (input.close_requested || was_pressed(input, Key::escape)) break;
+        if (reloads && watch_clock.ms() > k_watch_interval_ms) {
+            reload_changed(*host, options, files);
+            watch_clock = {};
+        }
         const uint32_t width = window->width_px(), height = window->height_px();
         if (width == 0 || height == 0) {  // minimised: draw nothing
             window->wait_events();

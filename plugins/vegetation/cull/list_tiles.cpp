@@ -132,9 +132,10 @@ void TileList::visit(Pending at, const Frustum& frustum, const Settings& setting
                                 at.space_camera, seen.stand_in_spread_px});
     }
     if (refined || !at.drawn || levels.cloud == TileLevels::k_none) return;
-    stand_in_count += !suffices && (levels.child_count > 0 || levels.is_streamed);
+    const bool stands_in = !suffices && (levels.child_count > 0 || levels.is_streamed);
+    stand_in_count += stands_in;
     clouds_.push_back({levels.cloud, seen.origin_camera, seen.bounds_camera, seen.nearest_m,
-                       levels.finest_density, tile.plant_count, levels.triangle_count});
+                       levels.finest_density, tile.plant_count, levels.triangle_count, stands_in});
 }
 
 void TileList::collect_plants(const Plants& plants) {

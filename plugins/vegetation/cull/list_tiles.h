@@ -29,6 +29,7 @@ struct CloudTile {
     float finest_density;  // TileLevels::finest_density: where more is asked for, its points are drawn larger
     uint64_t plant_count;
     uint64_t triangle_count;
+    bool stands_in = false;  // for what is not in memory yet
 };
 
 // What a frame would have drawn had it been in memory, and what is drawn from memory.

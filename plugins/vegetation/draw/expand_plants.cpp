@@ -2,26 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include "plugins/vegetation/eco/part_chance.h"
 #include "runtime/core/vector_clones.h"
 
 namespace coppice {
 namespace {
 
-// Multiples of the golden section.
-float turn_of(uint32_t rest_index) { return float(uint32_t(rest_index * 2654435769u) >> 8) * 0x1p-24f; }
-
-// In [0, 1), moved on by turn.
-inline float chance_of(uint32_t seed, uint32_t part_of_model, float turn) {
-    const float chance = part_chance(seed, part_of_model) + turn;
-    return chance < 1.0f ? chance : chance - 1.0f;
-}
-
 COPPICE_VECTOR_CLONES
 void chances_of(std::span<const uint32_t> seeds, uint32_t part_of_model, float turn,
                 PlantColumn<float>& out) {
     const size_t count = std::min(seeds.size(), out.size());
-    for (size_t i = 0; i < count; ++i) out[i] = chance_of(seeds[i], part_of_model, turn);
+    for (size_t i = 0; i < count; ++i) out[i] = turned_chance(seeds[i], part_of_model, turn);
 }
 
 COPPICE_VECTOR_CLONES
@@ -35,7 +25,7 @@ void first_points_of(std::span<const uint32_t> seeds, uint32_t part_of_model, ui
 
 void draw_plants(const SeenPlants& seen, const SceneGeometry& geometry, const FrameSettings& settings,
                  uint32_t rest_index, WorkPart& work) {
-    const float turn = turn_of(rest_index);
+    const float turn = rest_turn(rest_index);
     work.share_instances(std::span(seen.instances).first(seen.plant_count));
     PlantColumn<float> chances;
     PlantColumn<uint32_t> first_points;
@@ -54,7 +44,7 @@ void draw_plants(const SeenPlants& seen, const SceneGeometry& geometry, const Fr
         },
         [&](uint32_t plant, uint32_t part, uint32_t part_of_model, const PartRule& rule,
             const PartDemand& demand) {
-            const float chance = chance_of(seen.seed[plant], part_of_model, turn);
+            const float chance = turned_chance(seen.seed[plant], part_of_model, turn);
             const PartGeometry& place = geometry.part_geometry[part];
             work.add(place, rule.expand(rule.choose(demand, chance), demand.side_gain), plant, turn,
                      first_point_of(seen.seed[plant], part_of_model, place.point_turn_mask),

@@ -19,6 +19,8 @@ class FramePlants {
     void draw(const TileList& tiles, const SceneGeometry& geometry, const Frustum& frustum,
               const FrameSettings& settings, uint32_t rest_index, WorkList& work, size_t first_part) const;
 
+    // Of each of the list's runs.
+    std::span<const SeenPlants> seen() const { return std::span(seen_).first(run_count_); }
     // From the viewer to what was seen, clouds too: an estimate. Infinite where nothing was.
     float nearest_m(const TileList& tiles) const;
     // Of what was seen.

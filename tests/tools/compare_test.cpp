@@ -90,7 +90,10 @@ TEST(Comparison, NeedsRareAndLargeEnough) {
     EXPECT_EQ(speed_of(comparison), Speed::same) << "below the floor";
     for (size_t i = 0; i < ratios.size(); ++i) ratios[i] = i % 2 ? 5.0 * more : -4.0 * more;
     comparison.effect = effect_of_pairs(ratios);
-    EXPECT_EQ(speed_of(comparison), Speed::same) << "noise";
+    EXPECT_EQ(speed_of(comparison), Speed::inconclusive) << "large, but it may be noise";
+    for (size_t i = 0; i < ratios.size(); ++i) ratios[i] = i % 2 ? 0.1 : -0.1;
+    comparison.effect = effect_of_pairs(ratios);
+    EXPECT_EQ(speed_of(comparison), Speed::same);
     comparison.itself = {0.05, 0.001};
     EXPECT_EQ(speed_of(comparison), Speed::inconclusive);
     EXPECT_EQ(exit_code_of(status_of(comparison).error().id), 4);

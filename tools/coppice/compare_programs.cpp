@@ -54,10 +54,7 @@ Status fly_block(const ProgramsToCompare& programs, Fliers& fliers, uint32_t fir
     return {};
 }
 
-}  // namespace
-
-Result<Comparison> compare_programs(const ProgramsToCompare& programs) {
-    Flown flown;
+Status fly_rounds(const ProgramsToCompare& programs, Flown& flown) {
     Progress progress("comparing", k_rounds);
     for (uint32_t round = 0; round < k_rounds; ++round) {
         COPPICE_TRY(Fliers fliers, start_fliers(programs));
@@ -65,28 +62,44 @@ Result<Comparison> compare_programs(const ProgramsToCompare& programs) {
             return fail(ErrorId::usage, programs.changed, "", "flies a path of another length",
                         "the same scene for both");
         const Stopwatch clock;
-        // Blocks are spread over the path, the same ones in every comparison of that length.
+        // Blocks are spread over the path.
         for (uint32_t block = 0; clock.ms() < programs.seconds * 1e3 / k_rounds; ++block)
             COPPICE_CHECK(fly_block(programs, fliers, (round + block * k_rounds) * k_block_frames, flown));
         progress.advance();
     }
-    const size_t pairs = flown.new_over_base.size();
-    if (pairs < k_least_pairs)
-        return fail(ErrorId::usage, "", "--seconds",
-                    fmt::format("enough for {} blocks of frames only", pairs),
-                    fmt::format("{:.0f} seconds, or a smaller --headless",
-                                std::ceil(programs.seconds * double(k_least_pairs) / double(pairs) * 1.2)));
-    for (auto& counts : flown.counts)
-        for (auto& [name, count] : counts) count /= double(pairs * k_block_frames);
+    return {};
+}
+
+Comparison judge(const Flown& flown, double floor_share) {
     Comparison comparison;
+    comparison.samples = flown.new_over_base.size();
     comparison.base_ms = median(flown.ms[k_base]);
     comparison.new_ms = median(flown.ms[k_new]);
     comparison.effect = effect_of_pairs(flown.new_over_base);
     comparison.itself = effect_of_pairs(flown.again_over_base);
-    comparison.samples = pairs;
-    comparison.floor_share = programs.floor_share;
-    comparison.counts = compare_counts(flown.counts[k_base], flown.counts[k_again], flown.counts[k_new],
-                                       programs.floor_share);
+    comparison.floor_share = floor_share;
+    auto means = flown.counts;
+    for (auto& counts : means)
+        for (auto& [name, count] : counts) count /= double(comparison.samples * k_block_frames);
+    comparison.counts = compare_counts(means[k_base], means[k_again], means[k_new], floor_share);
+    return comparison;
+}
+
+}  // namespace
+
+Result<Comparison> compare_programs(const ProgramsToCompare& programs) {
+    Flown flown;
+    Comparison comparison;
+    for (uint32_t attempt = 0; attempt < k_most_attempts; ++attempt) {
+        COPPICE_CHECK(fly_rounds(programs, flown));
+        if (const size_t pairs = flown.new_over_base.size(); pairs < k_least_pairs)
+            return fail(
+                ErrorId::usage, "", "--seconds", fmt::format("enough for {} blocks of frames only", pairs),
+                fmt::format("{:.0f} seconds, or a smaller --headless",
+                            std::ceil(programs.seconds * double(k_least_pairs) / double(pairs) * 1.2)));
+        comparison = judge(flown, programs.floor_share);
+        if (speed_of(comparison) != Speed::inconclusive) break;
+    }
     return comparison;
 }
 

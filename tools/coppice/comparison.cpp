@@ -55,7 +55,8 @@ std::vector<CountChange> compare_counts(const std::map<std::string, double>& bas
 Speed speed_of(const Comparison& comparison) {
     if (!comparison.same_machine || is_difference(comparison.itself, comparison.floor_share))
         return Speed::inconclusive;
-    if (!is_difference(comparison.effect, comparison.floor_share)) return Speed::same;
+    if (std::fabs(comparison.effect.share) < comparison.floor_share) return Speed::same;
+    if (!is_difference(comparison.effect, comparison.floor_share)) return Speed::inconclusive;
     return comparison.effect.share > 0.0 ? Speed::slower : Speed::faster;
 }
 
@@ -108,9 +109,11 @@ Status status_of(const Comparison& comparison) {
                         fmt::format("less than {:g} %", 100.0 * comparison.floor_share));
         case Speed::inconclusive:
             return fail(ErrorId::inconclusive, "", "time of a frame",
-                        comparison.same_machine ? fmt::format("base differs from itself by {:.2f} %",
-                                                              100.0 * comparison.itself.share)
-                                                : std::string("flown on two machines or drivers"),
+                        comparison.same_machine
+                            ? fmt::format("{:+.2f} %, by a chance of {:.2g}; base against itself {:+.2f} %",
+                                          100.0 * comparison.effect.share, comparison.effect.chance,
+                                          100.0 * comparison.itself.share)
+                            : std::string("flown on two machines or drivers"),
                         "compare on one machine with nothing else to do");
         default:
             return {};

@@ -48,7 +48,7 @@ std::vector<CountChange> compare_counts(const std::map<std::string, double>& bas
                                         const std::map<std::string, double>& again,
                                         const std::map<std::string, double>& changed, double floor_share);
 
-// Inconclusive where base would not pass against itself.
+// Inconclusive where base would not pass against itself, and where what was found is large enough but may well be chance.
 Speed speed_of(const Comparison& comparison);
 nlohmann::json to_json(const Comparison& comparison);
 std::string describe(const Comparison& comparison);

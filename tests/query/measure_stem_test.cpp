@@ -82,6 +82,33 @@ TEST(MeasureStem, WhatHasNoWoodHasNone) {
     EXPECT_EQ(measure_stem(Plant{}).radius_m, 0.0f);
 }
 
+// Stalks that lean outwards from one place, as those of ferns do.
+TEST(MeasureStem, ABunchOfStalksHasNone) {
+    MadePlant fern;
+    fern.begin_part(false);
+    for (int i = 0; i < 12; ++i) {
+        const float angle = 2.0f * k_pi * float(i) / 12.0f;
+        const vec3 out(std::cos(angle), 0.0f, std::sin(angle));
+        fern.add_tube(out * 0.02f, out * 0.5f + vec3(0, 0.5f, 0), 0.004f, 0.002f);
+    }
+    EXPECT_EQ(measure_stem(fern.plant()).radius_m, 0.0f);
+}
+
+// Where a trunk forks its stem ends: branches are no part of its radius.
+TEST(MeasureStem, ForkedTrunksEndAtTheFork) {
+    MadePlant oak;
+    oak.begin_part(false);
+    oak.add_tube({0, 0, 0}, {0, 4, 0}, 0.42f, 0.4f);
+    for (int i = 0; i < 7; ++i) {
+        const float angle = 2.0f * k_pi * float(i) / 7.0f;
+        oak.add_tube({0, 4, 0}, {6 * std::cos(angle), 14, 6 * std::sin(angle)}, 0.2f, 0.02f);
+    }
+    const StemShape stem = measure_stem(oak.plant());
+    EXPECT_NEAR(stem.radius_m, 0.4f, 0.06f);
+    EXPECT_GT(stem.head_plant.y, 3.0f);
+    EXPECT_LT(stem.head_plant.y, 6.5f);
+}
+
 TEST(MeasureStem, StandsAsItsPlantStands) {
     const StemShape shape{{0, 0, 0}, {0, 10, 0}, 0.2f};
     Scene scene;

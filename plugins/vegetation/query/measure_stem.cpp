@@ -6,8 +6,12 @@ namespace coppice {
 namespace {
 
 constexpr int k_slabs = 24;
-// The next slab's wood belongs to the stem up to so many radii from where it was last, and at least so far.
-constexpr float k_reach_radii = 2.5f, k_least_reach_share = 0.01f;  // of the height
+// The next slab's wood belongs to the stem up to so many radii from where it was last, and at least so far. Stems do not widen
+// upwards: the radius is the least so far, or branches that leave together would be taken for one.
+constexpr float k_reach_radii = 2.0f, k_least_reach_share = 0.01f;  // of the height
+// None to meet: wood that is less of the way around than that, which is a bunch of stalks, and what is low on its plant and hardly
+// higher than wide, which is where stalks meet.
+constexpr float k_least_solidity = 0.6f, k_low_share = 0.3f, k_least_height_radii = 4.0f;
 
 struct Slab {
     vec3 middle{0.0f};
@@ -69,6 +73,7 @@ StemShape measure_stem(const Plant& plant) {
     const float lowest_m = wood.front().middle.y, height_m = plant.bounds_plant.max.y - lowest_m;
     if (!(height_m > 0.0f)) return {};
     std::vector<Slab> stem;
+    float least_radius_m = INFINITY;
     size_t first = 0;
     for (int i = 0; i < k_slabs; ++i) {
         const float top_m = lowest_m + height_m * float(i + 1) / float(k_slabs);
@@ -79,18 +84,27 @@ StemShape measure_stem(const Plant& plant) {
         // All of the lowest is stem; a bush of many stems has a wide one.
         const bool lowest = stem.empty();
         const float reach_m =
-            lowest ? INFINITY
-                   : std::max(k_reach_radii * stem.back().radius_m, k_least_reach_share * height_m);
+            lowest ? INFINITY : std::max(k_reach_radii * least_radius_m, k_least_reach_share * height_m);
         const Slab slab = gather(here, lowest ? vec3(0.0f) : stem.back().middle, reach_m);
-        if (slab.area_m2 > 0.0f)
+        if (slab.area_m2 > 0.0f) {
             stem.push_back(slab);
-        else if (!lowest)
+            least_radius_m = std::min(least_radius_m, slab.radius_m);
+        } else if (!lowest) {
             break;
+        }
     }
     if (stem.empty()) return {};
     StemShape shape;
     const size_t half = (stem.size() + 1) / 2;
-    for (size_t i = 0; i < half; ++i) shape.radius_m += stem[i].radius_m / float(half);
+    float around_m2 = 0.0f, area_m2 = 0.0f;
+    for (size_t i = 0; i < half; ++i) {
+        shape.radius_m += stem[i].radius_m / float(half);
+        around_m2 += 2.0f * k_pi * stem[i].radius_m * height_m / float(k_slabs);
+        area_m2 += stem[i].area_m2;
+    }
+    const float stem_m = stem.back().middle.y - lowest_m;
+    if (area_m2 < k_least_solidity * around_m2) return {};
+    if (stem_m < k_low_share * height_m && stem_m < k_least_height_radii * shape.radius_m) return {};
     shape.foot_plant = stem.front().middle;
     shape.foot_plant.y = lowest_m;
     shape.head_plant = stem.back().middle;

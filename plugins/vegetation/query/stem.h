@@ -14,8 +14,8 @@ struct StemShape {
     float radius_m = 0.0f;  // 0: none; grass and ferns are walked through
 };
 
-// Of the wood: what is no leaf, followed upwards from the lowest of it in slabs, as far as it goes on near where it was. The
-// radius is the mean over the lower half, so that neither the flare of the roots nor the tip decides.
+// Of the wood: what is no leaf, followed upwards from the lowest of it in slabs, as far as it goes on near where it was: to the tip, or
+// to where a trunk forks. The radius is the mean over the lower half, so that neither the flare of the roots nor the tip decides.
 StemShape measure_stem(const Plant& plant);
 
 // Where one stands, as the world has it.

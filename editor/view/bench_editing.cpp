@@ -119,6 +119,7 @@ Status bench_view(Registry& registry, const TerrainInterface* terrain, const std
     const EditorView::Times& times = view->times();
     fmt::print("  of that: files {:.0f}, scene {:.0f}, plants {:.0f}, tiles {:.0f}, upload {:.0f} ms\n",
                read_ms, times.scene_ms, times.plants_ms, times.tiles_ms, times.upload_ms);
+    std::fflush(stdout);
 
     const std::string kind = smallest_population(*view, *session);
     if (kind.empty()) return {};

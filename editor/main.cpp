@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include "editor/session/run_script.h"
+#include "editor/view/bench_editing.h"
 #include "editor/window/window_interface.h"
 #include "runtime/plugin/registry.h"
 
@@ -11,7 +12,7 @@ namespace {
 
 struct Options {
     std::string scene, script;
-    bool recover = false, discard = false;
+    bool recover = false, discard = false, bench = false;
     EditorWindowSettings window;
 };
 
@@ -43,6 +44,12 @@ Status run(const Options& options) {
     const TerrainInterface* terrain = nullptr;
     if (registry.load("terrain"))
         terrain = registry.find<TerrainInterface>(k_terrain_interface, k_terrain_version);
+    if (options.bench) {
+        EditorViewSettings view;
+        view.device = options.window.device;
+        view.validation = options.window.validation;
+        return bench_editing(registry, terrain, options.scene, view);
+    }
     COPPICE_TRY(const std::unique_ptr<Session> session, Session::open(options.scene, {terrain}));
     if (options.script.empty()) {
         COPPICE_CHECK(registry.load("editor_window"));
@@ -70,6 +77,9 @@ int run(int argc, char** argv) {
     Options options;
     app.add_option("SCENE", options.scene, "an *.eco.json file; made where there is none")->required();
     app.add_option("--script", options.script, "does the commands of this file, without a window");
+    app.add_flag("--bench", options.bench,
+                 "measures editing in this scene, without a window, and saves nothing")
+        ->excludes("--script");
     app.add_flag("--recover", options.recover, "what an earlier run left unsaved is done again first");
     app.add_flag("--discard", options.discard, "what an earlier run left unsaved is dropped")
         ->excludes("--recover");

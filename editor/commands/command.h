@@ -1,5 +1,5 @@
 // Everything that changes a document, by name: what the window's tools, scripts and tests call. A command looks at the
-// document, changes nothing, and says what is to be changed. README.md lists the arguments.
+// document, changes nothing, and says what is to be changed. docs/editor.md lists the arguments.
 #pragma once
 #include <span>
 #include <string>

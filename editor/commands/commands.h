@@ -1,4 +1,4 @@
-// The commands behind the names; what each takes is in README.md.
+// The commands behind the names; what each takes is in docs/editor.md.
 #pragma once
 #include "editor/commands/command.h"
 

@@ -4,11 +4,13 @@
 #include <chrono>
 #include <filesystem>
 #include <set>
+#include <fmt/format.h>
 #include "plugins/vegetation/cook/cook_file.h"
 #include "plugins/vegetation/eco/load_scene.h"
 #include "plugins/vegetation/eco/make_tiles.h"
 #include "plugins/vegetation/eco/scene_file.h"
 #include "plugins/vegetation/eco/shade_ground.h"
+#include "runtime/core/file.h"
 #include "runtime/core/hash.h"
 
 namespace coppice {
@@ -131,8 +133,11 @@ class Texts {
     std::map<std::string, Json> texts_;
 };
 
-// A cube of a metre, of a colour that no plant has.
-Result<Plant> make_box() {
+// A cube of a metre, of a colour that no plant has. Kept in the cache: cooking it takes longer than finding all plants.
+Result<Plant> find_or_make_box(const std::string& cache_dir) {
+    const CookSettings settings;
+    const std::string path = fmt::format("{}/missing-{:016x}.plant", cache_dir, hash_settings(settings));
+    if (auto kept = load_plant(path)) return kept;
     PlantDescription description;
     description.name = "missing plant";
     PartDescription part;
@@ -150,7 +155,9 @@ Result<Plant> make_box() {
             for (uint32_t i : {0u, 1u, 2u, 0u, 2u, 3u}) part.indices.push_back(first + i);
         }
     description.parts.push_back(std::move(part));
-    COPPICE_TRY(std::vector<std::byte> bytes, cook_plant(description, {}));
+    COPPICE_TRY(std::vector<std::byte> bytes, cook_plant(description, settings));
+    // Without a cache it is made each time.
+    (void)write_file(path, bytes);
     return load_plant_from_memory(std::make_shared<std::vector<std::byte>>(std::move(bytes)),
                                   "missing plant");
 }
@@ -215,7 +222,7 @@ Result<BaseScene> make_base_scene(const Document& document, const BaseSceneSetti
     COPPICE_TRY(base.scene, load_what_can_be(texts, document.root_path(), settings, base.faults));
     base.scene_ms = ms_since(clock);
     clock = std::chrono::steady_clock::now();
-    COPPICE_TRY(Plant box, make_box());
+    COPPICE_TRY(Plant box, find_or_make_box(settings.cache_dir));
     COPPICE_TRY(base.plants, load_plants(base.scene.models, box, settings, base.faults));
     base.box.individuals = {{uint32_t(base.plants.size()), 1.0f}};
     base.scene.models.push_back({"missing plant", "", 0, 1.0f});

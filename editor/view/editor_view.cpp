@@ -163,6 +163,17 @@ double EditorView::triangles_of(const std::string& kind) const {
     return sum;
 }
 
+double EditorView::crown_width_m(const std::string& kind) const {
+    const auto found = kinds_.find(kind);
+    if (found == kinds_.end()) return 0.0;
+    double sum = 0.0;
+    for (const PlantIndividual& individual : found->second.individuals) {
+        const vec3 size = bounds_of_model_[individual.model].size() * individual.scale;
+        sum += double(std::max(size.x, size.z)) / double(found->second.individuals.size());
+    }
+    return sum;
+}
+
 Box EditorView::bounds_of(const PlacedPlant& plant, const Document& document) const {
     const PlantKind& kind = kind_of(document.kinds()[plant.kind]);
     const PlantIndividual& individual = kind.individuals[plant.variation % kind.individuals.size()];

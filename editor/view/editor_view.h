@@ -38,6 +38,8 @@ class EditorView {
     const std::vector<Error>& faults() const { return faults_; }
     // Triangles of all variations of a kind, in the mean; 0: not known.
     double triangles_of(const std::string& kind) const;
+    // Of all variations of a kind, in the mean; 0: not known.
+    double crown_width_m(const std::string& kind) const;
     // At scale 1, metres.
     Box bounds_of(const PlacedPlant& plant, const Document& document) const;
     size_t base_plant_count(const std::string& kind) const;

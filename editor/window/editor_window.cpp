@@ -26,6 +26,21 @@ constexpr float k_walk_m_per_s = 6.0f, k_fast_factor = 6.0f, k_turn_rad_per_px =
 constexpr double k_idle_wait_s = 0.1;
 constexpr int k_awake_frames = 4;  // after the last event: panels settle over some frames
 
+// A new scene is seen from here, so that there is ground to paint on.
+constexpr dvec3 k_first_place{0.0, 28.0, 50.0};
+constexpr float k_first_pitch_rad = -0.5f;
+
+// Taken as they come: between two frames of a slow machine there may be many, and each counts.
+struct KeyPress {
+    int key, mods;
+    bool repeated;
+};
+struct PointerEvent {
+    vec2 at_px;
+    int mods;
+    bool pressed, held, released;  // the left button
+};
+
 double now_ms() {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch())
         .count();
@@ -81,8 +96,9 @@ class EditorWindow {
         ImGui::CreateContext();
         imgui_ = true;
         ImGui::GetIO().IniFilename = nullptr;  // panels have their places
-        ImGui_ImplGlfw_InitForVulkan(window_, true);
         glfwSetWindowUserPointer(window_, this);
+        queue_events();
+        ImGui_ImplGlfw_InitForVulkan(window_, true);  // goes on to call what is there
         glfwSetFramebufferSizeCallback(window_, [](GLFWwindow* window, int, int) {
             static_cast<EditorWindow*>(glfwGetWindowUserPointer(window))->swapchain_.invalidate();
         });
@@ -90,13 +106,18 @@ class EditorWindow {
         apply_theme(state_.dark, state_.scale);
         COPPICE_TRY(overlay_, Overlay::create(*view_->device, view_->width, view_->height));
 
-        camera_ = camera_at(view_->camera_path(), 0.0);
         const auto& json = session_.document().root().text->json;
-        if (const auto plants = json.find("plants");
-            plants != json.end() && plants->is_object() && !plants->empty()) {
-            tools_.active = plants->begin().key();
-            tools_.brush.kinds = {tools_.active};
+        camera_ = camera_at(view_->camera_path(), 0.0);
+        if (!json.contains("camera_path")) {
+            camera_.position_world = k_first_place;
+            camera_.position_world.y += ground_height(session_.terrain(), k_first_place.x, k_first_place.z);
+            camera_.yaw_rad = 0.0f;
+            camera_.pitch_rad = k_first_pitch_rad;
         }
+        tools_.crown_width_m = [this](const std::string& kind) { return view_->crown_width_m(kind); };
+        if (const auto plants = json.find("plants");
+            plants != json.end() && plants->is_object() && !plants->empty())
+            tools_.choose(plants->begin().key());
         state_.shadows = !view_->device->limits.is_cpu;
         settings_of_frame_.sample_distance_px = view_->sample_distance_px();
         settings_of_frame_.accumulate_limit = k_accumulate_limit;
@@ -134,6 +155,28 @@ class EditorWindow {
     }
 
   private:
+    static EditorWindow& of(GLFWwindow* window) {
+        return *static_cast<EditorWindow*>(glfwGetWindowUserPointer(window));
+    }
+
+    void queue_events() {
+        glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int mods) {
+            if (action != GLFW_RELEASE) of(window).presses_.push_back({key, mods, action == GLFW_REPEAT});
+        });
+        glfwSetMouseButtonCallback(window_, [](GLFWwindow* window, int button, int action, int mods) {
+            if (button != GLFW_MOUSE_BUTTON_LEFT) return;
+            double x = 0.0, y = 0.0;
+            glfwGetCursorPos(window, &x, &y);
+            const bool down = action == GLFW_PRESS;
+            of(window).left_down_ = down;
+            of(window).pointer_.push_back({vec2(float(x), float(y)), mods, down, down, !down});
+        });
+        glfwSetCursorPosCallback(window_, [](GLFWwindow* window, double x, double y) {
+            if (of(window).left_down_)
+                of(window).pointer_.push_back({vec2(float(x), float(y)), 0, false, true, false});
+        });
+    }
+
     // Whether the next frame would differ without an event.
     bool is_busy() const {
         const ImGuiIO& io = ImGui::GetIO();
@@ -162,8 +205,6 @@ class EditorWindow {
         state_.note = saved ? "saved" : to_string(saved.error());
     }
 
-    bool pressed(int key) const { return ImGui::IsKeyPressed(key, false); }
-
     void set_scale(float scale) {
         state_.scale = std::clamp(scale, 0.5f, 4.0f);
         load_fonts(state_.scale);
@@ -172,48 +213,73 @@ class EditorWindow {
     }
 
     void handle_keys() {
-        const ImGuiIO& io = ImGui::GetIO();
-        if (io.WantTextInput || state_.closing || state_.recovering) return;
-        if (io.KeyCtrl) {
-            if (pressed(GLFW_KEY_Z) || pressed(GLFW_KEY_Y)) {
-                tools_.stop(session_);
-                tools_.forget_selection();
-                const bool forward = pressed(GLFW_KEY_Y) || io.KeyShift;
-                const std::string name = forward ? session_.redo() : session_.undo();
-                state_.note = name.empty() ? "nothing to do" : (forward ? "done again: " : "undone: ") + name;
-            }
-            if (pressed(GLFW_KEY_S)) save();
-            return;
-        }
-        const std::pair<int, Tool> tools[] = {{GLFW_KEY_B, Tool::brush},
-                                              {GLFW_KEY_P, Tool::polygon},
-                                              {GLFW_KEY_T, Tool::place},
-                                              {GLFW_KEY_V, Tool::select}};
-        for (const auto& [key, tool] : tools)
-            if (pressed(key) && tools_.tool != tool) {
-                tools_.stop(session_);
-                tools_.tool = tool;
-            }
-        const float factor = ImGui::IsKeyPressed(GLFW_KEY_RIGHT_BRACKET, true)  ? 1.15f
-                             : ImGui::IsKeyPressed(GLFW_KEY_LEFT_BRACKET, true) ? 1.0f / 1.15f
-                                                                                : 1.0f;
-        if (io.KeyShift)
+        confirmed_ = cancelled_ = false;
+        scale_by_ = 1.0f;
+        const bool elsewhere = ImGui::GetIO().WantTextInput || state_.closing || state_.recovering;
+        for (const KeyPress& press : std::exchange(presses_, {}))
+            if (!elsewhere) handle_key(press);
+    }
+
+    void handle_key(const KeyPress& press) {
+        const bool shift = press.mods & GLFW_MOD_SHIFT;
+        const float factor = press.key == GLFW_KEY_RIGHT_BRACKET  ? 1.15f
+                             : press.key == GLFW_KEY_LEFT_BRACKET ? 1.0f / 1.15f
+                                                                  : 1.0f;
+        if (shift)
             tools_.brush.density_per_m2 = std::clamp(tools_.brush.density_per_m2 * factor, 0.001f, 20.0f);
         else
             tools_.brush.radius_m = std::clamp(tools_.brush.radius_m * factor, 0.2f, 100.0f);
-        if (pressed(GLFW_KEY_F1)) state_.help = !state_.help;
-        if (pressed(GLFW_KEY_DELETE)) tools_.act_on_selection(session_, "delete", nlohmann::json::object());
-        const auto& json = session_.document().root().text->json;
-        if (const auto plants = json.find("plants"); plants != json.end() && plants->is_object()) {
-            int key = GLFW_KEY_1;
-            for (const auto& [name, ignored] : plants->items()) {
-                if (key <= GLFW_KEY_9 && pressed(key)) {
-                    tools_.active = name;
-                    tools_.brush.kinds = {name};
-                }
-                ++key;
-            }
+        if (press.repeated) return;
+        if (press.mods & GLFW_MOD_CONTROL) return handle_control_key(press.key, shift);
+        switch (press.key) {
+            case GLFW_KEY_B:
+                return take(Tool::brush);
+            case GLFW_KEY_P:
+                return take(Tool::polygon);
+            case GLFW_KEY_T:
+                return take(Tool::place);
+            case GLFW_KEY_V:
+                return take(Tool::select);
+            case GLFW_KEY_F1:
+                state_.help = !state_.help;
+                return;
+            case GLFW_KEY_DELETE:
+                return tools_.act_on_selection(session_, "delete", nlohmann::json::object());
+            case GLFW_KEY_ENTER:
+            case GLFW_KEY_KP_ENTER:
+                confirmed_ = true;
+                return;
+            case GLFW_KEY_ESCAPE:
+                cancelled_ = true;
+                return;
+            default:
+                break;
         }
+        const auto& json = session_.document().root().text->json;
+        const auto plants = json.find("plants");
+        if (plants == json.end() || !plants->is_object() || press.key < GLFW_KEY_1 || press.key > GLFW_KEY_9)
+            return;
+        int key = GLFW_KEY_1;
+        for (const auto& [name, ignored] : plants->items())
+            if (key++ == press.key) tools_.choose(name);
+    }
+
+    void handle_control_key(int key, bool shift) {
+        if (key == GLFW_KEY_S) save();
+        if (key == GLFW_KEY_Q) ask_to_close();
+        if (key == GLFW_KEY_EQUAL || key == GLFW_KEY_KP_ADD) scale_by_ *= 1.15f;
+        if (key == GLFW_KEY_MINUS || key == GLFW_KEY_KP_SUBTRACT) scale_by_ /= 1.15f;
+        if (key != GLFW_KEY_Z && key != GLFW_KEY_Y) return;
+        tools_.stop(session_);
+        tools_.forget_selection();
+        const bool forward = key == GLFW_KEY_Y || shift;
+        const std::string name = forward ? session_.redo() : session_.undo();
+        state_.note = name.empty() ? "nothing to do" : (forward ? "done again: " : "undone: ") + name;
+    }
+
+    void take(Tool tool) {
+        if (tools_.tool != tool) tools_.stop(session_);
+        tools_.tool = tool;
     }
 
     void fly(float step_s) {
@@ -245,20 +311,24 @@ class EditorWindow {
         moved_ = !(camera_ == before);
     }
 
-    Gesture gesture() const {
-        const ImGuiIO& io = ImGui::GetIO();
-        Gesture gesture;
-        const bool in_view = !io.WantCaptureMouse && !state_.closing && !state_.recovering;
-        if (in_view || io.MouseDown[0]) gesture.ground = figures_.cursor;
-        gesture.pressed = in_view && ImGui::IsMouseClicked(0);
-        gesture.held = io.MouseDown[0];
-        gesture.released = ImGui::IsMouseReleased(0);
-        gesture.shift = io.KeyShift;
-        gesture.control = io.KeyCtrl;
-        gesture.alt = io.KeyAlt;
-        gesture.confirmed = !io.WantTextInput && (pressed(GLFW_KEY_ENTER) || pressed(GLFW_KEY_KP_ENTER));
-        gesture.cancelled = pressed(GLFW_KEY_ESCAPE);
-        return gesture;
+    void handle_pointer(ViewSize size) {
+        const bool blocked = state_.closing || state_.recovering;
+        const bool in_view = !ImGui::GetIO().WantCaptureMouse && !blocked;
+        for (const PointerEvent& event : std::exchange(pointer_, {})) {
+            Gesture gesture;
+            gesture.ground = pick_ground(camera_, size, event.at_px, session_.terrain());
+            gesture.pressed = event.pressed && in_view;
+            gesture.held = event.held;
+            gesture.released = event.released;
+            gesture.shift = event.mods & GLFW_MOD_SHIFT;
+            gesture.control = event.mods & GLFW_MOD_CONTROL;
+            gesture.alt = event.mods & GLFW_MOD_ALT;
+            if (!blocked) tools_.handle(session_, gesture);
+        }
+        Gesture keys;
+        keys.confirmed = confirmed_;
+        keys.cancelled = cancelled_;
+        if (confirmed_ || cancelled_) tools_.handle(session_, keys);
     }
 
     void draw_on_ground(const std::vector<dvec2>& points, bool closed, ImU32 color) const {
@@ -307,16 +377,10 @@ class EditorWindow {
         ImGui::NewFrame();
         const ImGuiIO& io = ImGui::GetIO();
         const ViewSize size{float(view_->width), float(view_->height)};
-        // Fonts are made anew before anything of this frame refers to them, in the next.
-        float scale_by = 1.0f;
-        if (io.KeyCtrl && !io.WantTextInput) {
-            if (pressed(GLFW_KEY_EQUAL) || pressed(GLFW_KEY_KP_ADD)) scale_by = 1.15f;
-            if (pressed(GLFW_KEY_MINUS) || pressed(GLFW_KEY_KP_SUBTRACT)) scale_by = 1.0f / 1.15f;
-        }
         fly(step_s);
         figures_.cursor = pick_ground(camera_, size, {io.MousePos.x, io.MousePos.y}, session_.terrain());
         handle_keys();
-        if (!state_.recovering) tools_.handle(session_, gesture());
+        handle_pointer(size);
         draw_marks();
         draw_panels(session_, tools_, *view_, figures_, state_);
         if (std::exchange(state_.wants_save, false)) save();
@@ -339,7 +403,8 @@ class EditorWindow {
         figures_.sample_distance_px = report.sample_distance_px;
         figures_.vertices = report.vertices;
         show_title();
-        if (scale_by != 1.0f) set_scale(state_.scale * scale_by);
+        // Fonts are made anew before anything of the next frame refers to them.
+        if (scale_by_ != 1.0f) set_scale(state_.scale * scale_by_);
         return {};
     }
 
@@ -364,6 +429,10 @@ class EditorWindow {
     ViewFigures figures_;
     Camera camera_;
     FrameSettings settings_of_frame_;
+    std::vector<KeyPress> presses_;
+    std::vector<PointerEvent> pointer_;
+    bool left_down_ = false, confirmed_ = false, cancelled_ = false;
+    float scale_by_ = 1.0f;
     bool moved_ = true;
     std::string title_;
 };

@@ -31,8 +31,8 @@ void explain(const char* words) {
 }
 
 void count_plants(const Session& session, PanelState& state) {
-    // Looked at again only after something was done; a stroke's plants count when it ends.
-    const size_t now = session.document().root().plants.size();
+    // Looked at again only after something was done.
+    const std::pair now(session.document().root().plants.size(), session.history().done_count());
     if (state.counted_at == now && !state.counts.empty()) return;
     state.counted_at = now;
     std::vector<size_t> counts(session.document().kinds().size(), 0);
@@ -128,8 +128,10 @@ void draw_populations(Session& session, Tools& tools, const EditorView& view, Pa
             if (!missing) ImGui::SameLine();
             if (ImGui::Selectable(missing ? (name + " (missing)").c_str() : name.c_str(),
                                   tools.active == name)) {
-                tools.active = name;
-                if (!missing) tools.brush.kinds = {name};
+                if (missing)
+                    tools.active = name;
+                else
+                    tools.choose(name);
             }
             const double placed = double(state.counts[name]), by_rule = double(view.base_plant_count(name));
             const double triangles = (placed + by_rule) * view.triangles_of(name);
@@ -173,8 +175,7 @@ void draw_populations(Session& session, Tools& tools, const EditorView& view, Pa
             tools.perform(session, "add_population",
                           {{"name", state.new_name}, {"source", state.new_source}});
             if (tools.message.empty()) {
-                tools.active = state.new_name;
-                tools.brush.kinds = {tools.active};
+                tools.choose(state.new_name);
                 state.new_name[0] = state.new_source[0] = '\0';
             }
         }
@@ -348,8 +349,9 @@ constexpr const char* k_help =
     "B brush   P polygon   T place   V select     1 to 9: population\n"
     "Brush: Shift erases all, Ctrl erases the active population, [ ] radius, Shift [ ] density, Alt-click "
     "picks\n"
-    "Ctrl Z undo   Ctrl Y redo   Ctrl S save   Ctrl + - size of all text   Del deletes what is selected   F1 "
-    "this";
+    "Ctrl Z undo   Ctrl Y redo   Ctrl S save   Ctrl Q close   Ctrl + - size of all text   Del deletes what "
+    "is "
+    "selected   F1 this";
 
 }  // namespace
 
@@ -383,7 +385,7 @@ void draw_panels(Session& session, Tools& tools, const EditorView& view, const V
                  PanelState& state) {
     const ImVec2 size = ImGui::GetIO().DisplaySize;
     const float bar_px = ImGui::GetFrameHeight() + 8.0f * state.scale;
-    const float side_px = std::min(300.0f * state.scale, size.x * 0.45f);
+    const float side_px = std::min(312.0f * state.scale, size.x * 0.45f);
     const ImGuiWindowFlags fixed = ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
                                    ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoTitleBar |
                                    ImGuiWindowFlags_NoBringToFrontOnFocus;

@@ -19,8 +19,8 @@ struct PanelState {
     char new_name[64] = "", new_source[256] = "", new_tile[128] = "";
     float importance_draft = 0.0f;
     std::string importance_kind;
-    std::map<std::string, size_t> counts;  // of placed plants
-    size_t counted_at = SIZE_MAX;
+    std::map<std::string, size_t> counts;               // of placed plants
+    std::pair<size_t, size_t> counted_at{SIZE_MAX, 0};  // plants, steps
 };
 
 struct ViewFigures {

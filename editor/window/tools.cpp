@@ -1,5 +1,6 @@
 #include "editor/window/tools.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include "runtime/core/hash.h"
 
@@ -23,6 +24,17 @@ const char* name_of(Tool tool) {
             return "Select";
     }
     return "";
+}
+
+void Tools::choose(const std::string& population) {
+    brush.kinds = {population};
+    if (population == active) return;
+    densities_[active] = brush.density_per_m2;
+    active = population;
+    if (const auto before = densities_.find(population); before != densities_.end())
+        brush.density_per_m2 = before->second;
+    else if (const double width_m = crown_width_m ? crown_width_m(population) : 0.0; width_m > 0.0)
+        brush.density_per_m2 = float(std::clamp(1.0 / (width_m * width_m), 0.001, 4.0));
 }
 
 nlohmann::json Tools::rule() const {
@@ -82,10 +94,12 @@ void Tools::begin_stroke(Session& session, const Gesture& gesture) {
     points_.clear();
     stroke_plants_ = 0;
     ++stroke_number_;
+    stroke_kind_ = !erasing_ && brush.kinds.size() == 1 ? *brush.kinds.begin() : "plants";
     stroke_.reset();
     if (erasing_) {
         if (gesture.control && !gesture.shift) {
             if (active.empty()) return;
+            stroke_kind_ = active;
             erased_kinds_ = {session.changing_document().kind_of(active)};
         }
     } else {
@@ -142,7 +156,7 @@ void Tools::stop(Session& session) {
     dragging_ = false;
     stroke_.reset();
     if (tool == Tool::brush) {
-        session.finish(fmt::format("{} {} plants", erasing_ ? "erase" : "paint", stroke_plants_));
+        session.finish(fmt::format("{} {} {}", erasing_ ? "erase" : "paint", stroke_plants_, stroke_kind_));
     } else if (tool == Tool::select && selected_ && glm::length(drag_to_ - drag_from_) > 0.05) {
         const dvec2 by = drag_to_ - drag_from_;
         act_on_selection(session, "move", {{"by", {by.x, by.y}}});
@@ -155,8 +169,7 @@ void Tools::handle(Session& session, const Gesture& gesture) {
     if (gesture.pressed && gesture.alt && at) {
         // What stands there becomes what is painted.
         pick(session, *at);
-        if (selected_) active = session.document().kinds()[selected_->kind];
-        if (selected_) brush.kinds = {active};
+        if (selected_) choose(session.document().kinds()[selected_->kind]);
         return;
     }
     switch (tool) {

@@ -1,5 +1,7 @@
 // What the mouse does in the view: brush, polygon, single plants. Turns gestures into commands of a session.
 #pragma once
+#include <functional>
+#include <map>
 #include <optional>
 #include <set>
 #include "editor/commands/brush.h"
@@ -32,9 +34,12 @@ class Tools {
   public:
     Tool tool = Tool::brush;
     BrushSettings brush;
-    std::string active;   // population: placed, painted where none is chosen, erased with Ctrl
-    std::string message;  // what went wrong last; empty: nothing
+    std::string active;  // population: placed, painted where none is chosen, erased with Ctrl
+    std::function<double(const std::string& kind)> crown_width_m;  // 0: not known
+    std::string message;                                           // what went wrong last; empty: nothing
 
+    // Makes the population the active one and the one that is painted, at the density it had last: at first its crowns touch.
+    void choose(const std::string& population);
     void handle(Session& session, const Gesture& gesture);
     // Also when the tool changes or the window loses the mouse: a stroke ends where it is.
     void stop(Session& session);
@@ -52,11 +57,13 @@ class Tools {
     void extend_stroke(Session& session, dvec2 to);
     void pick(Session& session, dvec2 at);
 
+    std::map<std::string, float> densities_;  // of populations that are not active
     std::optional<PaintStroke> stroke_;
     bool erasing_ = false, dragging_ = false;
     std::vector<uint16_t> erased_kinds_;
     std::vector<dvec2> points_;
     size_t stroke_plants_ = 0;
+    std::string stroke_kind_;  // in the step's name
     uint64_t stroke_number_ = 0;
     std::vector<dvec2> polygon_;
     std::optional<PlacedPlant> selected_;

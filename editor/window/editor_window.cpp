@@ -391,7 +391,7 @@ class EditorWindow {
         ImGui::Render();
 
         if (Status followed = view_->follow(session_); !followed) state_.note = to_string(followed.error());
-        settings_of_frame_.shadows = state_.shadows ? ShadowKind::light_space : ShadowKind::none;
+        settings_of_frame_.shadows = state_.shadows ? ShadowKind::clipmap : ShadowKind::none;
         const double begin_ms = now_ms();
         COPPICE_TRY(const gpu::CommandRing::Frame drawn, view_->begin_frame(camera_, settings_of_frame_));
         overlay_->record(drawn.commands, view_->vegetation->color(), ImGui::GetDrawData());

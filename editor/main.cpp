@@ -61,11 +61,13 @@ Status run(const Options& options) {
         return window->run(registry, *session, options.window);
     }
     print_warnings(*session);
+    const bool has_recovered = options.recover && session->recoverable_count() > 0;
     COPPICE_CHECK(settle_recovery(*session, options));
     const Status done = run_script(*session, options.script);
     print_warnings(*session);
-    // It came to its end: what it did not save it did not mean to. Only a run that is killed leaves a journal.
-    session->drop_journal();
+    // It came to its end: what it did not save it did not mean to. Only a run that is killed leaves a journal, and one that had
+    // steps of an earlier run back and did not save them.
+    if (!has_recovered || session->saved()) session->drop_journal();
     return done;
 }
 

@@ -83,7 +83,7 @@ Result<std::unique_ptr<Rasteriser>> Rasteriser::create(const gpu::Device& device
 Rasteriser::~Rasteriser() { device_.wait_idle(); }
 
 Status Rasteriser::make_big_triangles(Target& target, uint32_t limit) {
-    const uint64_t room = device_.limits.storage_range_bytes / 8;
+    const uint64_t room = device_.limits.storage_range_bytes / 8 / target.most_images;
     const uint32_t count = limit == 0 ? 0 : big_limit_from(std::min<uint64_t>(limit, room - 64));
     const VkDeviceSize size_bytes = (16 + 8ull * count) * target.most_images;
     if (size_bytes == target.big_triangles.size_bytes()) return {};

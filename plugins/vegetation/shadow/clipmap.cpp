@@ -33,8 +33,8 @@ struct Heights {
     double low_m, high_m;
 };
 
-Heights heights_of(const ClipmapFrame& frame, dvec3 to_sun) {
-    const double viewer_m = glm::dot(to_sun, frame.camera_world - frame.origin_world);
+Heights heights_of(const ClipmapFrame& frame, dvec3 origin_world, dvec3 to_sun) {
+    const double viewer_m = glm::dot(to_sun, frame.camera_world - origin_world);
     const Box& b = frame.bounds_camera;
     if (b.empty()) return {INFINITY, -INFINITY};
     double low_m = INFINITY, high_m = -INFINITY;
@@ -85,7 +85,7 @@ Clipmap::Level Clipmap::level_for(const ClipmapFrame& frame, uint32_t map) const
     const dvec3 viewer = frame.camera_world - frame.origin_world;
     // Whole texels from the origin: texels stand for the same places whenever the map is made.
     level.center = glm::floor((on_plane(level.across, level.along, viewer) + step) / texel + 0.5) * texel;
-    Heights heights = heights_of(frame, level.to_sun);
+    Heights heights = heights_of(frame, level.origin_world, level.to_sun);
     if (frame.bounds_camera.empty()) heights.low_m = heights.high_m = glm::dot(level.to_sun, viewer);
     // Bounds are rounded anew in each frame, and plants grow.
     const double margin_m = 1e-3 + 0.02 * (heights.high_m - heights.low_m);
@@ -98,7 +98,7 @@ float Clipmap::staleness(const ClipmapFrame& frame, uint32_t map) const {
     const Level& level = levels_[place_of(map)];
     if (level.map != map || level.side_texels != frame.side_texels) return INFINITY;
     // What has come since would be cut off at the map's depths.
-    const Heights heights = heights_of(frame, level.to_sun);
+    const Heights heights = heights_of(frame, level.origin_world, level.to_sun);
     if (heights.low_m < level.low_m || heights.high_m > level.high_m) return INFINITY;
     const double turn = glm::length(level.to_sun - dvec3(frame.to_sun));
     // Of the room to move, what a viewer there has used up.

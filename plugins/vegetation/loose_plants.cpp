@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 #include "plugins/vegetation/eco/make_tiles.h"
 
 namespace coppice {
@@ -16,6 +17,23 @@ uint64_t square_of(const dvec3& place_world) {
 
 tl::unexpected<Error> refuse(ErrorId id, std::string fault, std::string remedy) {
     return fail(id, "", "loose plant", std::move(fault), std::move(remedy));
+}
+
+constexpr uint32_t k_gone = UINT32_MAX;
+
+// Of each old model the new one: a plant's variations are models of one name, and the n-th stays the n-th; where there are
+// fewer now, it begins again with the first.
+std::vector<uint32_t> match_models(std::span<const LooseModel> before, std::span<const LooseModel> after) {
+    std::map<std::string_view, std::vector<uint32_t>> named;
+    for (uint32_t m = 0; m < after.size(); ++m) named[after[m].name].push_back(m);
+    std::map<std::string_view, size_t> seen;
+    std::vector<uint32_t> matched;
+    for (const LooseModel& model : before) {
+        const auto found = named.find(model.name);
+        const size_t nth = seen[model.name]++;
+        matched.push_back(found == named.end() ? k_gone : found->second[nth % found->second.size()]);
+    }
+    return matched;
 }
 
 }  // namespace
@@ -146,16 +164,14 @@ size_t LoosePlants::change_models(std::vector<LooseModel> models) {
     std::swap(before, squares_);
     used_squares_ = 0;
     place_of_.clear();
-    std::vector<LooseModel> old_models = std::move(models_);
+    const std::vector<uint32_t> new_model = match_models(models_, models);
     models_ = std::move(models);
     size_t removed = 0;
     for (auto& [name, square] : before)
         for (size_t row = 0; row < square.plants.size(); ++row) {
             Placement placement = square.placements[row];
-            const auto model =
-                std::ranges::find(models_, old_models[placement.model.model].name, &LooseModel::name);
-            placement.model.model = uint32_t(model - models_.begin());
-            if (model != models_.end()) {
+            placement.model.model = new_model[placement.model.model];
+            if (placement.model.model != k_gone) {
                 put(square.plants[row], name, placement);
             } else {
                 stems_.remove(square.plants[row]);

@@ -41,8 +41,8 @@ class LoosePlants {
     // Gives what changed to the vegetation. Before a frame's schedule. Errors: set_loose_tile's; what was not taken is tried
     // again.
     Status show();
-    // After another scene has taken the place of the old one: plants keep their numbers and get the models that have the
-    // same names. Those whose names are gone are removed; returns how many.
+    // After another scene has taken the place of the old one: plants keep their numbers, and get the models that have the
+    // same names, variation by variation. Those whose names are gone are removed; returns how many.
     size_t change_models(std::vector<LooseModel> models);
 
   private:

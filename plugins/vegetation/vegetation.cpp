@@ -70,9 +70,10 @@ class VegetationSystems final : public Vegetation {
         GeometrySource source{scene.path, scene.models, plants, {}, 0, grounds};
         for (const TileNode& tile : tree) source.clouds.push_back(&tile.cloud);
         COPPICE_TRY(SceneGeometry geometry, gather_geometry(source));
-        COPPICE_CHECK(show(std::move(geometry), std::move(grounds), scene.light));
+        COPPICE_TRY(Rows rows, make_rows(scene, tree, geometry.models));
+        COPPICE_CHECK(show(std::move(geometry), std::move(rows), std::move(grounds), scene.light));
         models_ = scene.models;
-        return add_tiles(scene, tree);
+        return {};
     }
 
     Status set_world(TileForest forest, std::vector<Plant> plants,
@@ -86,9 +87,9 @@ class VegetationSystems final : public Vegetation {
         for (const TileCloud& cloud : forest.clouds) source.clouds.push_back(&cloud);
         source.streamed_clouds = forest.packs.empty() ? 0 : TileResidency::cloud_count(settings);
         COPPICE_TRY(SceneGeometry geometry, gather_geometry(source));
-        COPPICE_CHECK(show(std::move(geometry), std::move(grounds), forest.light));
+        COPPICE_TRY(Rows rows, make_rows(forest));
+        COPPICE_CHECK(show(std::move(geometry), std::move(rows), std::move(grounds), forest.light));
         models_ = forest.models;
-        COPPICE_CHECK(add_rows(forest));
         if (!forest.packs.empty())
             residency_ = std::make_unique<TileResidency>(forest, settings, uint32_t(forest.clouds.size()));
         return {};
@@ -109,18 +110,18 @@ class VegetationSystems final : public Vegetation {
         auto found = loose_rows_.find(name);
         if (found == loose_rows_.end()) {
             if (count == 0) return {};
-            if (free_loose_rows_.empty())
+            if (rows_.free_loose_rows.empty())
                 return wrong(ErrorId::limit_exceeded, "no room for another",
                              "VegetationSettings::loose_tiles says how many there may be");
-            found = loose_rows_.emplace(name, LooseRow{free_loose_rows_.back(), {}}).first;
-            free_loose_rows_.pop_back();
+            found = loose_rows_.emplace(name, LooseRow{rows_.free_loose_rows.back(), {}}).first;
+            rows_.free_loose_rows.pop_back();
         }
         LooseRow& row = found->second;
         World& world = *settings_.world;
         ChunkId chunk{};
         if (count > 0) {
             auto [made, positions, turns, models] = world.create_chunk<PlantPosition, PlantTurn, PlantModel>(
-                uint32_t(count), world.chunk(chunks_.front()).entity(row.row));
+                uint32_t(count), world.chunk(rows_.chunks.front()).entity(row.row));
             if (!made)
                 return wrong(ErrorId::limit_exceeded, "no room for its plants", "fewer plants a tile");
             std::copy(loose.positions.begin(), loose.positions.end(), positions.begin());
@@ -132,7 +133,7 @@ class VegetationSystems final : public Vegetation {
         row.chunk = chunk;
         set_loose_row(row.row, loose);
         if (count == 0) {
-            free_loose_rows_.push_back(row.row);
+            rows_.free_loose_rows.push_back(row.row);
             loose_rows_.erase(found);
         }
         casters_.note_changes();
@@ -143,6 +144,7 @@ class VegetationSystems final : public Vegetation {
     Status resize(uint32_t width, uint32_t height) override {
         moved_ = true;
         host_picture_.reset();
+        refused_map_bytes_ = UINT64_MAX;  // a smaller picture leaves more
         return rasteriser_->resize(width, height);
     }
     Status set_host_picture(const HostPicture& picture) override {
@@ -205,33 +207,51 @@ class VegetationSystems final : public Vegetation {
         return {};
     }
 
-    // In place of what was shown before.
-    Status show(SceneGeometry geometry, std::vector<Ground> grounds, const Light& light) {
+    // The tiles of a scene in the world; nobody looks at them before they are shown.
+    struct Rows {
+        std::vector<ChunkId> chunks;  // of the tiles, and of each leaf's plants that is not streamed
+        std::vector<uint32_t> free_loose_rows;
+        uint64_t triangle_count = 0;
+    };
+
+    // In place of what was shown before, which stays on an error.
+    Status show(SceneGeometry geometry, Rows rows, std::vector<Ground> grounds, const Light& light) {
+        if (auto uploaded =
+                rasteriser_->set_geometry({geometry.vertices, geometry.owners, geometry.reserved_points});
+            !uploaded) {
+            drop_rows(rows);
+            return uploaded;
+        }
         drop_scene();
-        COPPICE_CHECK(
-            rasteriser_->set_geometry({geometry.vertices, geometry.owners, geometry.reserved_points}));
         geometry.vertices = {};
         geometry.owners = {};
         geometry_ = std::move(geometry);
+        rows_ = std::move(rows);
         grounds_ = std::move(grounds);
         for (Ground& ground : grounds_) ground.coarse.vertices = {};
-        refused_entries_ = refused_side_ = UINT32_MAX;
+        refused_entries_ = UINT32_MAX;
+        refused_map_bytes_ = UINT64_MAX;
         light_ = light;
         return {};
     }
 
-    tl::unexpected<Error> no_room(const std::string& path) {
-        drop_scene();
+    void drop_rows(Rows& rows) {
+        for (const ChunkId& chunk : rows.chunks) settings_.world->destroy_chunk(chunk);
+        rows = {};
+    }
+    tl::unexpected<Error> no_room(Rows& rows, const std::string& path) {
+        drop_rows(rows);
         return fail(ErrorId::limit_exceeded, path, "tiles", "no room for another tile", "place fewer plants");
     }
 
     // All in one chunk; plants follow when they are needed.
-    Status add_rows(const TileForest& forest) {
-        if (forest.rows.empty()) return {};
+    Result<Rows> make_rows(const TileForest& forest) {
+        Rows made;
+        if (forest.rows.empty()) return made;
         auto [tile_chunk, tiles, levels] =
             settings_.world->create_chunk<Tile, TileLevels>(uint32_t(forest.rows.size()));
-        if (!tile_chunk) return no_room(forest.path);
-        chunks_.push_back(tile_chunk);
+        if (!tile_chunk) return no_room(made, forest.path);
+        made.chunks.push_back(tile_chunk);
         for (size_t r = 0; r < forest.rows.size(); ++r) {
             const ForestRow& row = forest.rows[r];
             tiles[r] = {row.origin, row.bounds_tile, row.plant_count};
@@ -239,20 +259,22 @@ class VegetationSystems final : public Vegetation {
                          row.target,        row.finest_density, row.pack != k_no_row ? 1u : 0u,
                          row.triangle_count};
         }
-        scene_triangles_ = levels[0].triangle_count;
-        return {};
+        made.triangle_count = levels[0].triangle_count;
+        return made;
     }
 
     // All tiles in one chunk; each leaf owns the chunk of its plants. Where there may be loose tiles, row 0 holds the place
     // where the scene stands, and them; the scene's rows follow.
-    Status add_tiles(const Scene& scene, std::span<const TileNode> tree) {
+    Result<Rows> make_rows(const Scene& scene, std::span<const TileNode> tree,
+                           std::span<const DrawModel> models) {
+        Rows made;
         const uint32_t loose_count = std::min(settings_.loose_tiles, k_loose_tile_limit);
         const uint32_t first_row = loose_count > 0 ? 2 + loose_count : 0;
-        if (tree.empty() && first_row == 0) return {};
+        if (tree.empty() && first_row == 0) return made;
         auto [tile_chunk, tiles, levels] =
             settings_.world->create_chunk<Tile, TileLevels>(first_row + uint32_t(tree.size()));
-        if (!tile_chunk) return no_room(scene.path);
-        chunks_.push_back(tile_chunk);
+        if (!tile_chunk) return no_room(made, scene.path);
+        made.chunks.push_back(tile_chunk);
         for (size_t n = tree.size(); n-- > 0;) {  // children before their parents
             const TileNode& node = tree[n];
             const size_t row = first_row + n;
@@ -269,17 +291,17 @@ class VegetationSystems final : public Vegetation {
                     levels[first_row + node.first_child + child].triangle_count;
             if (node.child_count > 0) continue;
             const SceneTile& source = scene.tiles[node.tile];
-            auto [chunk, positions, turns, models] =
+            auto [chunk, positions, turns, plant_models] =
                 settings_.world->create_chunk<PlantPosition, PlantTurn, PlantModel>(
                     source.plant_count, settings_.world->chunk(tile_chunk).entity(uint32_t(row)));
-            if (!chunk) return no_room(scene.path);
-            chunks_.push_back(chunk);
+            if (!chunk) return no_room(made, scene.path);
+            made.chunks.push_back(chunk);
             for (uint32_t i = 0; i < source.plant_count; ++i) {
                 size_t plant = source.first_plant + i;
                 positions[i] = scene.positions[plant];
                 turns[i] = scene.turns[plant];
-                models[i] = scene.plant_models[plant];
-                levels[row].triangle_count += geometry_.models[models[i].model].triangle_count;
+                plant_models[i] = scene.plant_models[plant];
+                levels[row].triangle_count += models[plant_models[i].model].triangle_count;
             }
         }
         if (loose_count > 0) {
@@ -289,31 +311,37 @@ class VegetationSystems final : public Vegetation {
             for (uint32_t row = 1 + loose_count; row >= 2; --row) {
                 tiles[row] = k_empty_tile;
                 levels[row] = {};
-                free_loose_rows_.push_back(row);  // the lowest goes first
+                made.free_loose_rows.push_back(row);  // the lowest goes first
             }
-            set_outer_row(tiles, levels);
+            set_outer_row(tiles, levels, {});
         }
-        scene_triangles_ = levels[0].triangle_count;
-        return {};
+        made.triangle_count = levels[0].triangle_count;
+        return made;
     }
 
     void set_loose_row(uint32_t row, const LooseTile& loose) {
         World& world = *settings_.world;
-        const std::span<Tile> tiles = world.column<Tile>(chunks_.front());
-        const std::span<TileLevels> levels = world.column<TileLevels>(chunks_.front());
+        const std::span<Tile> tiles = world.column<Tile>(rows_.chunks.front());
+        const std::span<TileLevels> levels = world.column<TileLevels>(rows_.chunks.front());
         tiles[row] = loose.positions.empty() ? k_empty_tile : loose.tile;
         tiles[row].plant_count = loose.positions.size();
         levels[row].triangle_count = 0;
         for (const PlantModel& model : loose.models)
             levels[row].triangle_count += geometry_.models[model.model].triangle_count;
-        set_outer_row(tiles, levels);
-        scene_triangles_ = levels[0].triangle_count;
+        set_outer_row(tiles, levels, loose_rows_);
+        rows_.triangle_count = levels[0].triangle_count;
     }
 
+    struct LooseRow {
+        uint32_t row;
+        ChunkId chunk;
+    };
+    using LooseRows = std::map<uint64_t, LooseRow>;  // by the host's names
+
     // What row 0 holds: the scene and all loose tiles, those in use in front.
-    void set_outer_row(std::span<Tile> tiles, std::span<TileLevels> levels) {
+    static void set_outer_row(std::span<Tile> tiles, std::span<TileLevels> levels, const LooseRows& loose_rows) {
         uint32_t row_end = 2;
-        for (const auto& [name, loose] : loose_rows_) row_end = std::max(row_end, loose.row + 1);
+        for (const auto& [name, loose] : loose_rows) row_end = std::max(row_end, loose.row + 1);
         Tile& outer = tiles[0];
         const uint32_t scene_row = levels[1].target;
         const bool has_scene = scene_row != TileLevels::k_none;
@@ -341,15 +369,12 @@ class VegetationSystems final : public Vegetation {
         if (residency_) residency_->drop_plants(*settings_.world);
         for (const auto& [name, row] : loose_rows_) settings_.world->destroy_chunk(row.chunk);
         loose_rows_.clear();
-        free_loose_rows_.clear();
-        for (const ChunkId& chunk : chunks_) settings_.world->destroy_chunk(chunk);
-        chunks_.clear();
+        drop_rows(rows_);
         residency_.reset();
         geometry_ = {};
         grounds_.clear();
         report_ = {};
         counted_ = false;
-        scene_triangles_ = 0;
         casters_.forget();
         moved_ = is_new_ = true;
     }
@@ -361,7 +386,9 @@ class VegetationSystems final : public Vegetation {
         last_camera_ = camera_;
         last_light_ = light_;
         last_frame_ = frame_;
-        rested_ = rests && keep_ ? std::min(rested_ + 1, frame_.accumulate_limit) : 0;
+        // While maps that stay are made again, one by one, it waits.
+        const uint32_t step = std::exchange(made_maps_, false) ? 0 : 1;
+        rested_ = rests && keep_ ? std::min(rested_ + step, frame_.accumulate_limit) : 0;
         keep_ = frame_.accumulate_limit > 0 && !host_picture_;
         if (keep_)
             if (auto room = rasteriser_->keep_radiance(); !room) {
@@ -370,7 +397,7 @@ class VegetationSystems final : public Vegetation {
             }
         if (!keep_) rested_ = 0;
         ++averaged_;
-        if (std::exchange(tiles_changed_, false)) {
+        if (std::exchange(changed_, false)) {
             // The mean begins again, but d' stays as fine as it is by now, and with it what is wished for.
             rested_ = std::min({rested_, k_frames_to_finest, std::max(frame_.accumulate_limit, 1u) - 1});
             averaged_ = 0;
@@ -416,7 +443,7 @@ class VegetationSystems final : public Vegetation {
         frustum_ = make_frustum(camera_, rasteriser_->width(), rasteriser_->height());
         see_grounds();
         const bool waits = residency_ && frame_.wait_for_tiles && settings_.device->submits();
-        if (residency_ && residency_->update(world, chunks_.front(), geometry_, *rasteriser_, slot_, waits))
+        if (residency_ && residency_->update(world, rows_.chunks.front(), geometry_, *rasteriser_, slot_, waits))
             note_arrivals(!waits);  // frames that waited lack nothing
         begin_frame();
         if (waits && !settled_) wait_for_tiles(world);
@@ -457,7 +484,7 @@ class VegetationSystems final : public Vegetation {
             list_casters(tiles, plants);
             wish();
             residency_->wait();
-            if (!residency_->update(world, chunks_.front(), geometry_, *rasteriser_, slot_, true)) return;
+            if (!residency_->update(world, rows_.chunks.front(), geometry_, *rasteriser_, slot_, true)) return;
         }
     }
 
@@ -529,8 +556,8 @@ class VegetationSystems final : public Vegetation {
         const uint64_t pixel_count = uint64_t(rasteriser_->width()) * rasteriser_->height();
         casters_.list(tiles, plants, geometry_, grounds_,
                       {frustum_, camera_.position_world, tile_list_.origin_world(), motion_m_, pixel_count, scene_bounds(),
-                       std::min(frame_plants_.nearest_m(tile_list_), above_ground_m_), refused_side_,
-                       settings_.device->limits.storage_range_bytes},
+                       std::min(frame_plants_.nearest_m(tile_list_), above_ground_m_),
+                       settings_.device->limits.storage_range_bytes, refused_map_bytes_},
                       light_, drawn_);
     }
 
@@ -541,7 +568,7 @@ class VegetationSystems final : public Vegetation {
     }
 
     void note_arrivals(bool changed) {
-        tiles_changed_ = changed;
+        changed_ = changed_ || changed;
         casters_.note_arrivals();
     }
 
@@ -596,7 +623,7 @@ class VegetationSystems final : public Vegetation {
         if (auto maps = rasteriser_->make_shadow_maps(casters_.side_texels(),
                                                       casters_.any() ? casters_.map_count() : 0);
             !maps) {
-            refused_side_ = casters_.side_texels();
+            refused_map_bytes_ = casters_.map_bytes();
             log_warning("{}", to_string(maps.error()));
             casters_.drop();
         }
@@ -606,7 +633,9 @@ class VegetationSystems final : public Vegetation {
             {drawn_.view, resting_.shift_px, keep_ ? resting_.new_share : 0.0f, resting_.filter_radius_px,
              host_picture_ ? &*host_picture_ : nullptr},
             casters_.maps());
-        casters_.commit(layout_.dropped_entries == 0);
+        made_maps_ = casters_.changed_kept_maps();
+        changed_ = changed_ || made_maps_;
+        casters_.commit(layout_.whole_maps);
         if (rasteriser_->dropped_shadows()) casters_.forget();
         report_.write_ms = now_ms() - begin;
     }
@@ -648,7 +677,7 @@ class VegetationSystems final : public Vegetation {
         slot_counts_[slot_] = {counts_of(report_), true};
         report_.sample_distance_px = drawn_.sample_distance_px;
         report_.vertex_budget = budget_;
-        report_.scene_triangles = scene_triangles_;
+        report_.scene_triangles = rows_.triangle_count;
         report_.work_entries = layout_.entry_count;
         report_.dropped_entries = layout_.dropped_entries;
         report_.dropped_triangles = rasteriser_->dropped_triangles();
@@ -667,16 +696,10 @@ class VegetationSystems final : public Vegetation {
     SceneGeometry geometry_;
     std::vector<SceneModel> models_;  // of geometry_, for explain_frame
     std::vector<Ground> grounds_;
-    std::vector<ChunkId> chunks_;  // of the tiles, and of each leaf's plants that is not streamed
+    Rows rows_;
     static constexpr Tile k_empty_tile{dvec3(0.0), {vec3(0.0f), vec3(0.0f)}, 0};
-    struct LooseRow {
-        uint32_t row;
-        ChunkId chunk;
-    };
-    std::map<uint64_t, LooseRow> loose_rows_;  // by the host's names
-    std::vector<uint32_t> free_loose_rows_;    // taken from the back
+    LooseRows loose_rows_;
     std::unique_ptr<TileResidency> residency_;
-    uint64_t scene_triangles_ = 0;
 
     std::optional<HostPicture> host_picture_;
     Camera camera_;
@@ -693,7 +716,8 @@ class VegetationSystems final : public Vegetation {
     bool is_new_ = true;  // the scene: nobody has been anywhere in it
     bool keep_ = false, keep_refused_ = false;
     uint32_t averaged_ = 0;       // frames that the mean is of, before this one
-    bool tiles_changed_ = false;  // of a streamed world, since the last frame
+    bool made_maps_ = false;      // that stay, in the last frame
+    bool changed_ = false;        // those, or tiles of a streamed world: the mean is of what was before
     bool settled_ = false;        // the picture shows the mean of all frames there will be
     RestingFrame resting_;
     FrameSettings drawn_;  // frame_, with the d' of the resting view
@@ -711,7 +735,7 @@ class VegetationSystems final : public Vegetation {
     FramePlants frame_plants_;
     FrameCasters casters_;
     std::vector<TileWish> wishes_;
-    uint32_t refused_side_ = UINT32_MAX;  // there was no room for a shadow map of that side
+    uint64_t refused_map_bytes_ = UINT64_MAX;  // so much found no room
     static constexpr float k_list_reach = 1.25f;
     float listed_px_ = 0.0f,
           spread_for_px_ = 0.0f;   // d' that the tiles were listed for, and the largest for what is hidden

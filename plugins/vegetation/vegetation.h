@@ -59,8 +59,8 @@ class Vegetation {
     virtual ~Vegetation() = default;
 
     // plants[i] is the packed plant of scene.models[i]. Uploads geometry, makes the tiles' chunks. Replaces the scene
-    // before. Waits for the device; not for frames. Errors: value_out_of_range (the old scene stays), limit_exceeded,
-    // device_lost (the scene is empty then).
+    // before, beside which it has to have room: where it has not, set an empty one first. Waits for the device; not for frames.
+    // Errors: value_out_of_range, limit_exceeded, device_lost; the old scene stays.
     virtual Status set_scene(const Scene& scene, std::vector<Plant> plants) = 0;
     // A world that is read while it is flown over (eco/tile_forest.h). plants[i] is the packed plant of forest.models[i].
     // Errors: set_scene's.

@@ -1,23 +1,22 @@
 #include "runtime/core/file_watcher.h"
 
 #include <mutex>
+#include <utility>
 
 namespace coppice {
 namespace {
 std::mutex g_mutex;
-FileWatcher g_watcher = nullptr;
-void* g_context = nullptr;
+FileWatching g_watching;
 }  // namespace
 
-void set_file_watcher(FileWatcher watcher, void* context) {
+FileWatching set_file_watcher(FileWatcher watcher, void* context) {
     std::lock_guard lock(g_mutex);
-    g_watcher = watcher;
-    g_context = context;
+    return std::exchange(g_watching, {watcher, context});
 }
 
 void tell_file_watcher(const std::string& path) {
     std::lock_guard lock(g_mutex);
-    if (g_watcher) g_watcher(g_context, path);
+    if (g_watching.watcher) g_watching.watcher(g_watching.context, path);
 }
 
 }  // namespace coppice

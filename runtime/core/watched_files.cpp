@@ -1,7 +1,6 @@
 #include "runtime/core/watched_files.h"
 
 #include <filesystem>
-#include "runtime/core/file_watcher.h"
 
 namespace coppice {
 
@@ -14,11 +13,20 @@ WatchedFiles::Stamp WatchedFiles::stamp_of(const std::string& path) {
 }
 
 void WatchedFiles::note(void* context, const std::string& path) {
-    static_cast<WatchedFiles*>(context)->stamps_[path] = stamp_of(path);
+    WatchedFiles& files = *static_cast<WatchedFiles*>(context);
+    files.stamps_[path] = stamp_of(path);
+    if (files.before_.watcher) files.before_.watcher(files.before_.context, path);
 }
 
-void WatchedFiles::begin() { set_file_watcher(&WatchedFiles::note, this); }
-void WatchedFiles::end() { set_file_watcher(nullptr, nullptr); }
+// While nothing is opened yet: the watcher of before is known before it is asked for.
+void WatchedFiles::begin() {
+    before_ = set_file_watcher(nullptr, nullptr);
+    set_file_watcher(&WatchedFiles::note, this);
+}
+void WatchedFiles::end() {
+    set_file_watcher(before_.watcher, before_.context);
+    before_ = {};
+}
 
 bool WatchedFiles::changed() {
     bool any = false;

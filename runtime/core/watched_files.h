@@ -3,10 +3,11 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include "runtime/core/file_watcher.h"
 
 namespace coppice {
 
-// From begin to end it is told of every file that is opened (file_watcher.h), and nobody else is. A file that is written
+// From begin to end it is told of every file that is opened (file_watcher.h), and tells who was told before. A file that is written
 // to while it is loaded counts as changed, since what is kept of it is from before.
 class WatchedFiles {
   public:
@@ -27,6 +28,7 @@ class WatchedFiles {
     static Stamp stamp_of(const std::string& path);
     static void note(void* context, const std::string& path);
     std::map<std::string, Stamp> stamps_;
+    FileWatching before_;
 };
 
 }  // namespace coppice

@@ -58,6 +58,24 @@ TEST_F(WatchedFilesTest, KeepWhatWasWatchedBefore) {
     EXPECT_TRUE(files.changed());
 }
 
+// A host that watches files itself learns of those that are loaded for it, and goes on watching.
+TEST_F(WatchedFilesTest, TellWhoWatchedBefore) {
+    std::vector<std::string> told;
+    set_file_watcher(
+        [](void* context, const std::string& path) {
+            static_cast<std::vector<std::string>*>(context)->push_back(path);
+        },
+        &told);
+    WatchedFiles files;
+    files.begin();
+    ASSERT_TRUE(read_text_file(path("a")));
+    files.end();
+    ASSERT_TRUE(read_text_file(path("b")));
+    set_file_watcher(nullptr, nullptr);
+    EXPECT_EQ(told, (std::vector{path("a"), path("b")}));
+    EXPECT_EQ(files.size(), 1u);
+}
+
 TEST_F(WatchedFilesTest, SeeWhatIsWrittenWhileItIsLoaded) {
     WatchedFiles files;
     files.begin();

@@ -79,5 +79,26 @@ TEST(WorkList, WhatDoesNotFitIsDroppedAndCounted) {
     EXPECT_EQ(work.gather(instances, few).dropped_entries, 7u);
 }
 
+// Shadow maps come behind the picture: those that lie within the buffers lack nothing.
+TEST(WorkList, SaysWhichMapsAreWhole) {
+    WorkList work;
+    const size_t map_parts[] = {2, 1, 1};
+    work.begin(1, map_parts);
+    for (size_t part = 0; part < 5; ++part)
+        for (int i = 0; i < 10; ++i) work.part(part).add({}, points(5), work.part(part).add_instance({}));
+    auto whole_maps = [&](size_t instance_room, size_t entry_room) {
+        std::vector<WorkInstance> instances(instance_room);
+        std::vector<WorkEntry> entries(entry_room);
+        return work.gather(instances, entries).whole_maps;
+    };
+    EXPECT_EQ(whole_maps(50, 50), 3u);
+    EXPECT_EQ(whole_maps(50, 49), 2u);
+    EXPECT_EQ(whole_maps(49, 50), 2u);
+    EXPECT_EQ(whole_maps(40, 50), 2u);
+    EXPECT_EQ(whole_maps(39, 50), 1u);
+    EXPECT_EQ(whole_maps(50, 29), 0u);
+    EXPECT_EQ(whole_maps(5, 50), 0u);
+}
+
 }  // namespace
 }  // namespace coppice

@@ -292,5 +292,35 @@ TEST_F(EmbeddedForestTest, ChangedFilesAreLoadedWhileItIsDrawn) {
     EXPECT_FALSE(forest->plants().remove(*fern));
 }
 
+// Models of one name are a plant's variations: the host's plants keep theirs.
+TEST_F(EmbeddedForestTest, VariationsStayWhenFilesChange) {
+    const char* k_two = R"({"birch": {"source": "birch.json"}, "fern": {"source": "fern.json", "variations": 3}})";
+    write("clearing.eco.json", scene_of(k_two, 20));
+    ASSERT_TRUE(forest->reload_if_changed());
+    std::vector<uint32_t> ferns;
+    for (uint32_t m = 0; m < forest->scene().models.size(); ++m)
+        if (forest->scene().models[m].name == "fern") ferns.push_back(m);
+    ASSERT_EQ(ferns.size(), 3u);
+    for (size_t i = 0; i < 3; ++i) {
+        Placement fern = fern_at(double(i) - 1.0);
+        fern.model.model = ferns[i];
+        ASSERT_TRUE(forest->plants().add(fern));
+    }
+    const Pixels before = draw();
+    const char* k_another_first =
+        R"({"alder": {"source": "birch.json"}, "birch": {"source": "birch.json"}, "fern": {"source": "fern.json", "variations": 3}})";
+    write("clearing.eco.json", scene_of(k_another_first, 20));
+    auto loaded = forest->reload_if_changed();
+    ASSERT_TRUE(loaded) << to_string(loaded.error());
+    ASSERT_TRUE(*loaded);
+    EXPECT_EQ(differing(before, draw(), 0, k_width), 0u);
+    EXPECT_EQ(forest->plants().size(), 3u);
+    // Fewer than before: none is lost.
+    write("clearing.eco.json", scene_of(k_plants, 20));
+    ASSERT_TRUE(forest->reload_if_changed());
+    draw();
+    EXPECT_EQ(forest->plants().size(), 3u);
+}
+
 }  // namespace
 }  // namespace coppice

@@ -201,6 +201,38 @@ TEST_F(VulkanFaults, FramesAreWholeOrSayWhatTheyLackAndTheNextOnesAreWhole) {
         EXPECT_TRUE(struck.contains(call)) << call;
 }
 
+// Whoever loads another scene while one is drawn has one of the two.
+TEST_F(VulkanFaults, ASceneThatFindsNoRoomLeavesTheOneBefore) {
+    const auto device = this->device();
+    ASSERT_TRUE(device);
+    Host host(*device);
+    ASSERT_TRUE(host.create());
+    ASSERT_TRUE(host.play(scene_, plants_));
+    auto picture = [&] {
+        std::vector<uint32_t> colors;
+        EXPECT_TRUE(host.draw(3.0, ShadowKind::light_space, 2 * k_width * k_height, colors));
+        return colors;
+    };
+    const std::vector<uint32_t> before = picture();
+    Scene other = scene_;
+    for (PlantPosition& position : other.positions) position.scale *= 0.5f;
+    std::set<std::string> struck;
+    for (uint64_t n = 0; n < k_most_calls; ++n) {
+        faults::fail_nth(n, VK_ERROR_OUT_OF_DEVICE_MEMORY);
+        const Status loaded = host.vegetation->set_scene(other, plants_);
+        const std::string failed = faults::stop_failing();
+        SCOPED_TRACE(testing::Message() << failed << ", call " << n);
+        if (loaded) {
+            EXPECT_TRUE(failed.empty());
+            break;
+        }
+        struck.insert(failed);
+        EXPECT_EQ(picture(), before);
+    }
+    EXPECT_NE(picture(), before);
+    EXPECT_TRUE(struck.contains("vkAllocateMemory"));
+}
+
 // A device that is lost says so; a host may make all of it again.
 TEST_F(VulkanFaults, ALostDeviceIsReportedAndMadeAgain) {
     std::vector<uint32_t> before;

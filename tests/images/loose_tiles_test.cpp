@@ -80,6 +80,9 @@ struct LooseTiles : testing::Test {
         FrameSettings settings;
         settings.level_of_detail = level_of_detail;
         settings.shadows = shadows;
+        return draw(settings);
+    }
+    std::vector<uint8_t> draw(const FrameSettings& settings) {
         do {
             auto frame = ring_.begin();
             EXPECT_TRUE(frame);
@@ -94,6 +97,18 @@ struct LooseTiles : testing::Test {
         std::vector<uint8_t> rgba(size_t(k_width) * k_height * 4);
         EXPECT_TRUE(
             gpu::read_now(*device_, vegetation_->color(), 0, std::as_writable_bytes(std::span(rgba))));
+        return rgba;
+    }
+
+    // The mean of so many frames, when it does not change any more.
+    std::vector<uint8_t> settle(uint32_t accumulate_limit) {
+        FrameSettings settings;
+        settings.shadows = ShadowKind::clipmap;
+        settings.accumulate_limit = accumulate_limit;
+        std::vector<uint8_t> rgba = draw(settings);
+        for (int i = 0; i < 200 && vegetation_->report().rested_frames < accumulate_limit; ++i)
+            rgba = draw(settings);
+        EXPECT_EQ(vegetation_->report().rested_frames, accumulate_limit);
         return rgba;
     }
 
@@ -165,6 +180,35 @@ TEST_F(LooseTiles, ThrowTheShadowsOfTheScene) {
 }
 
 // Levels of detail are each plant's own, so that few pixels change where no cloud stands for a tile.
+// The mean of a view at rest is of one world: maps that are made again one by one must not leave what they were in it, however
+// few frames it is of.
+TEST_F(LooseTiles, LeaveNoShadowInAViewAtRest) {
+    ASSERT_TRUE(vegetation_->set_scene(scene_, plants_));
+    // A fern of 50 m between sun and scene, that the viewer does not see.
+    const dvec3 above = dvec3(glm::normalize(Light{}.direction_to_sun)) * 150.0 - dvec3(0.0, 0.0, 15.0);
+    const PlantPosition position{0.0f, 0.0f, 0.0f, 200.0f};
+    const PlantTurn turn = pack_turn_about_y(0.0f);
+    const PlantModel model{0, 1};
+    const Box bounds{200.0f * plants_[0].bounds_plant.min, 200.0f * plants_[0].bounds_plant.max};
+    const LooseTile shade{{above, bounds, 1}, {&position, 1}, {&turn, 1}, {&model, 1}};
+    auto distance = [](const std::vector<uint8_t>& a, const std::vector<uint8_t>& b) {
+        double sum = 0.0;
+        for (size_t i = 0; i < a.size(); ++i) sum += std::abs(int(a[i]) - int(b[i]));
+        return sum / (0.75 * double(a.size()));
+    };
+    for (uint32_t frames : {1u, 4u, 24u}) {
+        SCOPED_TRACE(frames);
+        const std::vector<uint8_t> lit = settle(frames);
+        EXPECT_LT(distance(settle(frames), lit), 1e-9);
+        ASSERT_TRUE(vegetation_->set_loose_tile(1, shade));
+        const double shaded = distance(settle(frames), lit);
+        EXPECT_GT(shaded, 3.0);
+        ASSERT_TRUE(vegetation_->set_loose_tile(1, {}));
+        // Which frames the mean is of differs, where maps were made in some.
+        EXPECT_LT(distance(settle(frames), lit), 0.05 * shaded);
+    }
+}
+
 TEST_F(LooseTiles, HaveLevelsOfDetail) {
     ASSERT_TRUE(vegetation_->set_scene(empty_, plants_));
     for (size_t t = 0; t < scene_.tiles.size(); ++t) ASSERT_TRUE(add_loose(t, t));

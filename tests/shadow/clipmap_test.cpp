@@ -23,10 +23,9 @@ ClipmapFrame frame_at(dvec3 camera_world, dvec3 scene_world = dvec3(0.0)) {
     return frame;
 }
 
-size_t commit(Clipmap& maps, bool incomplete = false) {
+size_t commit(Clipmap& maps, Clipmap::Drawn drawn = Clipmap::Drawn::whole) {
     const size_t count = maps.due().size();
-    const std::vector<uint8_t> flags(count, incomplete);
-    maps.commit({reinterpret_cast<const bool*>(flags.data()), count});
+    maps.commit(std::vector<Clipmap::Drawn>(count, drawn));
     return count;
 }
 
@@ -212,7 +211,7 @@ TEST(Clipmap, WhatLackedTilesIsMadeAgainWhenSomeHaveBeenRead) {
     Clipmap maps;
     const ClipmapFrame frame = frame_at(dvec3(0, 2, 0));
     maps.update(frame);
-    const size_t all = commit(maps, true);
+    const size_t all = commit(maps, Clipmap::Drawn::lacking_tiles);
     maps.update(frame);
     EXPECT_TRUE(maps.due().empty());
     maps.note_arrivals();
@@ -240,6 +239,49 @@ TEST(Clipmap, ChangesReachEveryMapOneByOne) {
         commit(maps);
     }
     for (uint32_t map = maps.first(); map <= maps.last(); ++map) EXPECT_EQ(made[map], 3) << map;
+}
+
+// Of changes that reach all of them the nearest are made first: they are what is looked at.
+TEST(Clipmap, OfMapsAsOldTheNearestIsMadeFirst) {
+    Clipmap maps;
+    const ClipmapFrame frame = frame_at(dvec3(0, 2, 0));
+    maps.update(frame);
+    commit(maps);
+    maps.note_changes();
+    for (uint32_t map = maps.first(); map <= maps.last(); ++map) {
+        maps.update(frame);
+        ASSERT_EQ(maps.due().size(), 1u);
+        EXPECT_EQ(maps.due()[0], map);
+        commit(maps);
+    }
+}
+
+// Where the lists have no room for all maps, those that found some are made, the others next, and no frame is stuck with all.
+TEST(Clipmap, MapsThatFoundNoRoomStayDue) {
+    Clipmap maps;
+    const ClipmapFrame frame = frame_at(dvec3(0, 2, 0));
+    maps.update(frame);
+    const size_t all = maps.due().size();
+    const std::vector<uint32_t> due(maps.due().begin(), maps.due().end());
+    const std::vector<Clipmap::Drawn> whole(2, Clipmap::Drawn::whole);
+    maps.commit(whole);
+    maps.update(frame);
+    ASSERT_EQ(maps.due().size(), all - 2);
+    EXPECT_TRUE(std::equal(maps.due().begin(), maps.due().end(), due.begin() + 2));
+    // One that was cut short is made once more, by and by.
+    commit(maps, Clipmap::Drawn::cut);
+    for (size_t i = 0; i < 2 * all; ++i) {
+        maps.update(frame);
+        EXPECT_EQ(maps.due().size(), 1u);
+        EXPECT_TRUE(i > 0 || maps.due()[0] == due[2]);
+        commit(maps, Clipmap::Drawn::cut);
+    }
+    for (size_t i = 0; i < all; ++i) {
+        maps.update(frame);
+        commit(maps);
+    }
+    maps.update(frame);
+    EXPECT_TRUE(maps.due().empty());
 }
 
 // A first plant, or one that is higher than all before, lies beyond what depths there are.

@@ -1,5 +1,5 @@
-// The files that are opened to be read as long as this lives: what a scene or a plant was made from. Only one
-// lives at a time.
+// The files that are opened to be read as long as this lives: what a scene or a plant was made from. Who was
+// told of them before still is; those that live at a time end in reverse.
 #pragma once
 #include <filesystem>
 #include <set>
@@ -10,8 +10,8 @@ namespace coppice {
 
 class OpenedFiles {
   public:
-    OpenedFiles() { set_file_watcher(&OpenedFiles::add, this); }
-    ~OpenedFiles() { set_file_watcher(nullptr, nullptr); }
+    OpenedFiles() : before_(set_file_watcher(&OpenedFiles::add, this)) {}
+    ~OpenedFiles() { set_file_watcher(before_.watcher, before_.context); }
     OpenedFiles(const OpenedFiles&) = delete;
     OpenedFiles& operator=(const OpenedFiles&) = delete;
 
@@ -20,10 +20,12 @@ class OpenedFiles {
 
   private:
     static void add(void* context, const std::string& path) {
-        static_cast<OpenedFiles*>(context)->paths_.insert(
-            std::filesystem::path(path).lexically_normal().string());
+        OpenedFiles& opened = *static_cast<OpenedFiles*>(context);
+        opened.paths_.insert(std::filesystem::path(path).lexically_normal().string());
+        if (opened.before_.watcher) opened.before_.watcher(opened.before_.context, path);
     }
     std::set<std::string> paths_;
+    FileWatching before_;
 };
 
 }  // namespace coppice

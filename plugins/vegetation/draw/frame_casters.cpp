@@ -30,9 +30,10 @@ uint32_t side_of(uint32_t wanted_texels, uint64_t pixel_count) {
 
 // Of nested maps: one lies behind the other where buffers may be bound.
 uint32_t nested_side_of(uint32_t wanted_texels, float focal_px, uint64_t most_bytes) {
-    constexpr uint32_t k_step = 64, k_most = 4096;
+    constexpr uint32_t k_step = 64;
     if (wanted_texels == 0) return Clipmap::side_for(focal_px, most_bytes);
-    return std::clamp((wanted_texels + k_step - 1) / k_step * k_step, k_step, k_most);
+    const uint32_t most = Clipmap::most_side(most_bytes);
+    return std::clamp((std::min(wanted_texels, most) + k_step - 1) / k_step * k_step, k_step, most);
 }
 
 float farthest_along(const Box& box, vec3 direction) {
@@ -92,7 +93,8 @@ void FrameCasters::list(const TileList::Tiles& tiles, const TileList::Plants& pl
     far_m_ = settings.shadow_distance_m;
     side_texels_ = is_nested_ ? nested_side_of(settings.shadow_side_texels, view.frustum.focal_px, view.most_map_bytes)
                               : side_of(settings.shadow_side_texels, view.pixel_count);
-    if (side_texels_ >= view.refused_side_texels) {
+    map_count_ = is_nested_ ? k_shadow_map_places : 1;
+    if (map_bytes() >= view.refused_map_bytes) {
         clipmap_.forget();
         return drop();
     }
@@ -106,7 +108,6 @@ void FrameCasters::list(const TileList::Tiles& tiles, const TileList::Plants& pl
 void FrameCasters::list_warped(const TileList::Tiles& tiles, const TileList::Plants& plants,
                                const SceneGeometry& geometry, std::span<const Ground> grounds,
                                const View& view, const FrameSettings& settings, float far_m) {
-    map_count_ = 1;
     const Frustum& of = view.frustum;
     casters_[0].list(tiles, plants, geometry, grounds, make_caster_frustum(of, to_sun_, far_m),
                      view.camera_world, settings);
@@ -128,7 +129,6 @@ void FrameCasters::list_warped(const TileList::Tiles& tiles, const TileList::Pla
 void FrameCasters::list_nested(const TileList::Tiles& tiles, const TileList::Plants& plants,
                                const SceneGeometry& geometry, std::span<const Ground> grounds,
                                const View& view, const FrameSettings& settings, float far_m) {
-    map_count_ = k_shadow_map_places;
     // Along the view a place is nearer than it is; off the axis as much farther as corners are.
     const float farthest_m = std::min(far_m / view.frustum.corner_cos, farthest(view.scene_bounds));
     clipmap_.update({view.camera_world, view.origin_world, view.motion_m, to_sun_, view.frustum.focal_px, 0.5f * view.nearest_m,
@@ -206,12 +206,16 @@ void FrameCasters::draw(const SceneGeometry& geometry, uint32_t rest_index, Work
     }
 }
 
-void FrameCasters::commit(bool is_whole) {
+// One map counts as drawn at least, so that lists too short for all do not mean all in every frame.
+void FrameCasters::commit(uint32_t whole_maps) {
     if (!is_nested_ || !any()) return;
-    if (!is_whole) return clipmap_.forget();
-    std::array<bool, k_most_work_maps> incomplete{};
-    for (size_t i = 0; i < drawn_.size(); ++i) incomplete[i] = casters_[drawn_[i].map].is_incomplete();
-    clipmap_.commit(std::span(incomplete).first(drawn_.size()));
+    std::array<Clipmap::Drawn, k_most_work_maps> made{};
+    const size_t count = std::min<size_t>(std::max(whole_maps, 1u), drawn_.size());
+    for (size_t i = 0; i < count; ++i)
+        made[i] = i >= whole_maps                             ? Clipmap::Drawn::cut
+                  : casters_[drawn_[i].map].is_incomplete() ? Clipmap::Drawn::lacking_tiles
+                                                              : Clipmap::Drawn::whole;
+    clipmap_.commit(std::span(made).first(count));
 }
 
 }  // namespace coppice

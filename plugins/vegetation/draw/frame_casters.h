@@ -43,9 +43,8 @@ class FrameCasters {
         uint64_t pixel_count;
         Box scene_bounds;    // all that there is, relative to the camera
         float nearest_m;     // from the viewer to what is seen, about
-        // A map as large as one that found no room is not drawn.
-        uint32_t refused_side_texels;
-        uint64_t most_map_bytes;  // that the device takes
+        uint64_t most_map_bytes;      // of all maps together, that the device takes
+        uint64_t refused_map_bytes;   // found no room: maps of so much are not drawn
     };
     // Which maps are to be drawn, and which tiles into them. Without a sun, or with shadows off, there are none. settings: of the
     // frame as it is drawn. May be called again before the frame is drawn.
@@ -60,7 +59,10 @@ class FrameCasters {
     void drop();
     uint32_t side_texels() const { return side_texels_; }
     uint32_t map_count() const { return map_count_; }
+    uint64_t map_bytes() const { return uint64_t(side_texels_) * side_texels_ * 4 * map_count_; }
     uint32_t drawn_map_count() const { return uint32_t(drawn_.size()); }
+    // Of maps that stay, some are others than in the frame before.
+    bool changed_kept_maps() const { return is_nested_ && !drawn_.empty(); }
     ShadowSettings maps() const;
     // What of a streamed world is missing.
     void add_wishes(std::vector<TileWish>& wishes) const;
@@ -70,8 +72,9 @@ class FrameCasters {
     std::span<const size_t> part_counts() const { return part_counts_; }
     void draw(const SceneGeometry& geometry, uint32_t rest_index, WorkList& work, size_t first_part);
 
-    // The frame has been set: maps that stay are what they were to be, unless some of it did not fit into the work list.
-    void commit(bool is_whole);
+    // The frame has been set: of maps that stay so many, from the first, are what they were to be; of others some did not fit
+    // into the work list.
+    void commit(uint32_t whole_maps);
     // What is seen is not what it was: maps that stay are drawn anew.
     void forget() { clipmap_.forget(); }
     // More of a streamed world has been read.

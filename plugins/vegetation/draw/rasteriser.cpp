@@ -102,10 +102,12 @@ void Rasteriser::read_big_counts(uint32_t slot) {
         const uint32_t count = *std::ranges::max_element(of);
         if (count <= target->big_limit) continue;
         for (uint32_t each : of) dropped_triangles_ += each - std::min(each, target->big_limit);
-        dropped_shadows_ = dropped_shadows_ || target->is_shadow;
         const uint64_t wanted = std::min<uint64_t>(uint64_t(count) + count / 2, UINT32_MAX);
+        const uint32_t limit = target->big_limit;
         if (auto grown = make_big_triangles(*target, uint32_t(wanted)); !grown)
             log_warning("{}", to_string(grown.error()));
+        // Where there is no more room, maps that are drawn again would lack as much.
+        dropped_shadows_ = dropped_shadows_ || (target->is_shadow && target->big_limit > limit);
     }
 }
 
@@ -202,15 +204,6 @@ Status Rasteriser::set_geometry(const GeometryData& data) {
         return fail(ErrorId::limit_exceeded, "", "geometry",
                     std::to_string(vertex_count) + " vertices in one scene",
                     "this device takes " + std::to_string(device_.limits.texel_elements));
-    // The old ones need not have room beside the new ones, where the device can be waited for.
-    device_.wait_idle();
-    for (gpu::Buffer* old : {&vertices_, &owners_, &staged_vertices_, &staged_owners_})
-        retired_.keep(std::exchange(*old, gpu::Buffer()));
-    if (device_.submits()) retired_.drop_all();
-    COPPICE_TRY(vertices_, gpu::Buffer::create(device_, texel_buffer(0, VK_FORMAT_R32G32B32A32_UINT,
-                                                                     gpu::MemoryUse::device, "vertices")));
-    COPPICE_TRY(owners_, gpu::Buffer::create(
-                             device_, texel_buffer(0, VK_FORMAT_R32_UINT, gpu::MemoryUse::device, "owners")));
     COPPICE_TRY(gpu::Buffer vertices,
                 gpu::Buffer::create(
                     device_, texel_buffer(vertex_count * sizeof(PackedVertex), VK_FORMAT_R32G32B32A32_UINT,
@@ -225,10 +218,15 @@ Status Rasteriser::set_geometry(const GeometryData& data) {
             settings.memory = gpu::MemoryUse::upload;
             COPPICE_TRY(slot.uploads, gpu::Buffer::create(device_, settings));
         }
-    COPPICE_CHECK(stage_geometry(vertices, std::as_bytes(data.vertices), staged_vertices_));
-    COPPICE_CHECK(stage_geometry(owners, std::as_bytes(data.owners), staged_owners_));
-    vertices_ = std::move(vertices);
-    owners_ = std::move(owners);
+    gpu::Buffer staged_vertices, staged_owners;
+    COPPICE_CHECK(stage_geometry(vertices, std::as_bytes(data.vertices), staged_vertices));
+    COPPICE_CHECK(stage_geometry(owners, std::as_bytes(data.owners), staged_owners));
+    device_.wait_idle();
+    retired_.keep(std::exchange(staged_vertices_, std::move(staged_vertices)));
+    retired_.keep(std::exchange(staged_owners_, std::move(staged_owners)));
+    retired_.keep(std::exchange(vertices_, std::move(vertices)));
+    retired_.keep(std::exchange(owners_, std::move(owners)));
+    if (device_.submits()) retired_.drop_all();
     vertex_uploads_.clear();
     owner_uploads_.clear();
     upload_bytes_ = 0;

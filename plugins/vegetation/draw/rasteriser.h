@@ -65,8 +65,8 @@ class Rasteriser {
     // The device has finished the slot's last frame. Before any other call for the slot's next one.
     void begin_slot(uint32_t slot) { retired_.begin_slot(slot); }
 
-    // Waits for the device; where the host keeps its queue, the geometry comes with the next frame recorded. Errors:
-    // limit_exceeded, device_lost.
+    // Waits for the device; where the host keeps its queue, the geometry comes with the next frame recorded. Needs room beside
+    // the old one. Errors: limit_exceeded, device_lost; the old one stays.
     Status set_geometry(const GeometryData& data);
     Status resize(uint32_t width, uint32_t height);  // errors: value_out_of_range, limit_exceeded
 
@@ -107,7 +107,7 @@ class Rasteriser {
     const gpu::Buffer& shadow_maps() const { return shadows_.image; }
     // Large triangles that found no room in the list of the last finished frame of this slot.
     uint32_t dropped_triangles() const { return dropped_triangles_; }
-    // Likewise, of shadow maps: these lack something.
+    // Likewise, of shadow maps: these lack something that there is room for now.
     bool dropped_shadows() const { return dropped_shadows_; }
     ResourceIndex color_resource() const { return color_resource_; }
     uint64_t gpu_bytes() const;

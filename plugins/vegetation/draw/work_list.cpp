@@ -234,8 +234,13 @@ WorkList::Layout WorkList::gather(std::span<WorkInstance> instances, std::span<W
     }
     const uint32_t capacity = uint32_t(std::min<size_t>(entries.size(), UINT32_MAX));
     uint32_t next = place_entries(0, picture_part_count_, 0, capacity, layout.picture);
-    for (size_t map = 0, first = picture_part_count_; map < map_count_; first = map_ends_[map++])
+    for (size_t map = 0, first = picture_part_count_; map < map_count_; first = map_ends_[map++]) {
         next = place_entries(first, map_ends_[map], next, capacity, layout.maps[map]);
+        bool is_whole = layout.whole_maps == map && next <= capacity;
+        for (size_t i = first; i < map_ends_[map]; ++i)
+            is_whole = is_whole && places_[i].instance_count == parts_[i].instances_.size();
+        layout.whole_maps += is_whole;
+    }
     layout.entry_count = std::min(next, capacity);
     layout.dropped_entries = size().entries - layout.entry_count;
 

@@ -173,6 +173,7 @@ class WorkList {
         std::array<WorkRanges, k_most_work_maps> maps;
         uint32_t instance_count = 0, entry_count = 0;
         uint32_t dropped_entries = 0;  // beyond the capacity of the buffers
+        uint32_t whole_maps = 0;       // from the first: nothing of them was dropped
     };
     // Copies all parts, in parallel; entries and instances that do not fit are dropped and counted.
     Layout gather(std::span<WorkInstance> instances, std::span<WorkEntry> entries);

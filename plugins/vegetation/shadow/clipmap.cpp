@@ -1,6 +1,7 @@
 #include "plugins/vegetation/shadow/clipmap.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include "plugins/vegetation/shadow/shadow_scene.h"
 
@@ -50,10 +51,14 @@ dvec2 on_plane(dvec3 across, dvec3 along, dvec3 p) { return dvec2(glm::dot(acros
 
 }  // namespace
 
-uint32_t Clipmap::side_for(float focal_px, uint64_t most_bytes) {
+uint32_t Clipmap::most_side(uint64_t most_bytes) {
     const double room = std::sqrt(double(most_bytes) / (4.0 * k_shadow_map_places));
-    const double side = std::min({double(focal_px) / double(k_texel_px * k_reach), room, 4096.0});
-    return std::max(uint32_t(side / 64.0 + (side < room ? 0.5 : 0.0)), 2u) * 64u;
+    return std::max(uint32_t(std::min(room, 4096.0) / 64.0), 2u) * 64u;
+}
+
+uint32_t Clipmap::side_for(float focal_px, uint64_t most_bytes) {
+    const double side = std::min(double(focal_px) / double(k_texel_px * k_reach), 4096.0);
+    return std::clamp(uint32_t(side / 64.0 + 0.5) * 64u, 128u, most_side(most_bytes));
 }
 
 float Clipmap::texel_m(uint32_t map) {
@@ -134,13 +139,13 @@ void Clipmap::update(const ClipmapFrame& frame) {
     first_ = std::max(first_ + k_shadow_map_places, last_ + 1) - k_shadow_map_places;
     while (first_ < last_ && !lasts(first_)) ++first_;
     due_count_ = 0;
-    float stalest = k_soon;
+    float stalest = 0.0f;
     uint32_t soon = k_shadow_map_count;
     for (uint32_t map = first_; map <= last_; ++map) {
         const float stale = staleness(frame, map);
         if (stale >= 1.0f) {
             due_[due_count_++] = map;
-        } else if (stale >= stalest) {
+        } else if (stale >= k_soon && stale > stalest) {  // of equals the nearest
             stalest = stale;
             soon = map;
         }
@@ -151,11 +156,13 @@ void Clipmap::update(const ClipmapFrame& frame) {
 
 bool Clipmap::is_due(uint32_t map) const { return std::ranges::find(due(), map) != due().end(); }
 
-void Clipmap::commit(std::span<const bool> incomplete) {
-    for (size_t i = 0; i < due_count_; ++i) {
+void Clipmap::commit(std::span<const Drawn> drawn) {
+    assert(drawn.size() <= due_count_);
+    for (size_t i = 0; i < drawn.size(); ++i) {
         Level& level = levels_[place_of(due_[i])];
         level = next_[place_of(due_[i])];
-        level.incomplete = incomplete[i];
+        level.incomplete = drawn[i] == Drawn::lacking_tiles;
+        level.outdated = drawn[i] == Drawn::cut;
         level.made_at = commit_count_;
     }
     due_count_ = 0;

@@ -29,6 +29,7 @@ class Clipmap {
   public:
     // Of maps for a picture with that focal length, a multiple of 64; fewer where all places in most_bytes, 4 a texel, have no more.
     static uint32_t side_for(float focal_px, uint64_t most_bytes);
+    static uint32_t most_side(uint64_t most_bytes);
     static float texel_m(uint32_t map);
     // Where it is kept.
     static uint32_t place_of(uint32_t map) { return map % k_shadow_map_places; }
@@ -39,8 +40,11 @@ class Clipmap {
     // before holds, so it may be asked again.
     void update(const ClipmapFrame& frame);
     std::span<const uint32_t> due() const { return {due_.data(), due_count_}; }
-    // The maps that are due have been drawn; incomplete[i]: due()[i] lacked what is still to be read.
-    void commit(std::span<const bool> incomplete);
+    // How much of a map there was.
+    enum class Drawn : uint8_t { whole, lacking_tiles, cut };
+    // The first of the maps that are due have been drawn: without tiles that are still to be read, or without what found no room
+    // in the lists. The others stay due.
+    void commit(std::span<const Drawn> drawn);
     // Nothing is as it was: all are due.
     void forget() { levels_ = {}; }
     // More has been read, or what is there has changed: maps that were incomplete, or all, are due, one by one.

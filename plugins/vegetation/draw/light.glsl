@@ -7,7 +7,7 @@
 struct Light {
     vec4 to_sun;        // unit; w: exposure
     vec4 sun_color;     // w: haze density, 1/m
-    vec4 zenith_color;
+    vec4 zenith_color;  // w: 1 where all nested maps are of one sun
     vec4 horizon_color; // w: how far along the view shadows are seen, m
     vec4 ground_color;
     vec4 haze_color;

@@ -33,7 +33,9 @@ struct LightBlock {
     vec4 to_sun, sun_color, zenith_color, horizon_color, ground_color, haze_color;
     vec4 shadow_x, shadow_y, shadow_z, shadow_w, sun_across, sun_along, shadow_growth_xy, shadow_growth_wz;
     vec4 nested;  // of several maps: the first's reach and texels, m, its place, and how many follow it
-    vec4 nested_rows[3 * k_most_work_maps];  // by their place: columns, rows, depths
+    // Of nested maps, in their order: columns, rows and depths; and, where all are of one sun, those of the viewer and how depths
+    // grow, beside the first map's.
+    vec4 nested_rows[3 * k_most_work_maps], nested_viewers[k_most_work_maps];
 };
 
 gpu::BufferSettings device_buffer(VkDeviceSize size_bytes, const char* name) {
@@ -633,12 +635,22 @@ void Rasteriser::set_light(const Light& light, const ShadowSettings& shadow) {
                      vec4(growth(one.row_w), growth(one.row_z)),
                      vec4(shadow.first_reach_m, shadow.first_texel_m, float(shadow.first_map),
                           shadow.seen.empty() ? 0.0f : float(shadow.seen.size() - 1)),
+                     {},
                      {}};
+    bool is_one_sun = true;
+    const float first_depth_per_m = std::max(glm::length(vec3(one.row_z)), 1e-20f);
     for (size_t i = 0; i < shadow.seen.size() && i < k_most_work_maps; ++i) {
-        block.nested_rows[3 * i] = shadow.seen[i].row_x;
-        block.nested_rows[3 * i + 1] = shadow.seen[i].row_y;
-        block.nested_rows[3 * i + 2] = shadow.seen[i].row_z;
+        const ShadowView& map = shadow.seen[i];
+        block.nested_rows[3 * i] = map.row_x;
+        block.nested_rows[3 * i + 1] = map.row_y;
+        block.nested_rows[3 * i + 2] = map.row_z;
+        const float texels = std::ldexp(1.0f, int(i));  // of the first map, one of this
+        is_one_sun = is_one_sun && vec3(map.row_x) * texels == vec3(one.row_x) &&
+                     vec3(map.row_y) * texels == vec3(one.row_y);
+        block.nested_viewers[i] = vec4(map.row_x.w, map.row_y.w, map.row_z.w,
+                                       glm::length(vec3(map.row_z)) / first_depth_per_m);
     }
+    block.zenith_color.w = is_one_sun ? 1.0f : 0.0f;
     std::memcpy(slots_[slot_].light.mapped(), &block, sizeof block);
 }
 

@@ -3,7 +3,8 @@
 layout(constant_id = 4) const uint k_shadow_maps = 0u;  // none, one, or 2: several, nested
 layout(binding = 1) readonly buffer Lights {
     Light light;
-    vec4 nested_rows[3 * 12];  // of nested maps in their order: columns, rows, depths
+    // Of nested maps in their order: columns, rows, depths; and of maps of one sun those of the viewer, and how depths grow.
+    vec4 nested_rows[3 * 12], nested_viewers[12];
 };
 const uint k_map_places = 12u;
 layout(binding = 3) readonly buffer ShadowMap { uint shadow_map[]; };
@@ -58,8 +59,15 @@ float sunlit_in_nested(Light sun, vec3 place, float distance_m, vec3 normal, out
     texel_m = sun.nested.y * exp2(map);
     float sun_offset = texel_m > k_crown_texel_m ? k_crown_sun_offset : k_sun_offset;
     vec4 p = vec4(place + (normal * normal_offset(dot(normal, sun.to_sun.xyz)) + sun.to_sun.xyz * sun_offset) * texel_m, 1.0);
-    int rows = int(map) * 3;
-    vec3 at = vec3(dot(nested_rows[rows], p), dot(nested_rows[rows + 1], p), dot(nested_rows[rows + 2], p));
+    vec3 at;
+    if (sun.zenith_color.w > 0.0) {  // a third of the reads
+        vec4 viewer = nested_viewers[int(map)];
+        vec3 first = vec3(dot(sun.shadow_x.xyz, p.xyz), dot(sun.shadow_y.xyz, p.xyz), dot(sun.shadow_z.xyz, p.xyz));
+        at = viewer.xyz + first * vec3(vec2(exp2(-map)), viewer.w);
+    } else {
+        int rows = int(map) * 3;
+        at = vec3(dot(nested_rows[rows], p), dot(nested_rows[rows + 1], p), dot(nested_rows[rows + 2], p));
+    }
     float side = sun.sun_along.w;
     return sunlit_at(at, (uint(sun.nested.z + map) % k_map_places) * uint(side) * uint(side), side);
 }

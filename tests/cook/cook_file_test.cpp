@@ -109,13 +109,13 @@ TEST_F(CookFile, TheCacheCooksOnce) {
     ASSERT_TRUE(first && second);
     EXPECT_EQ(first->content_hash, second->content_hash);
     EXPECT_EQ(g_grown, 1);
-    EXPECT_TRUE(load_plant(*cooked_path(cache_dir(), source, 0, {})));
+    EXPECT_TRUE(load_plant(*cooked_path(cache_dir(), {source, 0}, {})));
 }
 
 TEST_F(CookFile, TheCacheFollowsSourceVariationSettingsAndReferences) {
     auto path_of = [this](const std::string& source, uint64_t variation = 0,
                           const CookSettings& settings = {}) {
-        return *cooked_path(cache_dir(), source, variation, settings);
+        return *cooked_path(cache_dir(), {source, variation}, settings);
     };
     std::string source = write("a.json", "12345");
     std::string before = path_of(source);
@@ -149,7 +149,7 @@ class Log {
 };
 
 TEST_F(CookFile, TheCacheReplacesWhatIsBrokenAndNotesIt) {
-    std::string source = write("a.json", "12345"), path = *cooked_path(cache_dir(), source, 0, {});
+    std::string source = write("a.json", "12345"), path = *cooked_path(cache_dir(), {source, 0}, {});
     ASSERT_TRUE(find(source));
     std::filesystem::resize_file(path, 200);
     ASSERT_FALSE(load_plant(path));
@@ -192,6 +192,33 @@ TEST_F(CookFile, InspectShowsWhatIsInside) {
         EXPECT_NE(table.find(word), std::string::npos) << word;
     EXPECT_NE(json.find("\"triangles\": 10"), std::string::npos);
     EXPECT_NE(json.find("\"area_m2\""), std::string::npos);
+}
+
+// What is set of a plant's parts stands beside it, and what was cooked without it is not what is found.
+TEST_F(CookFile, SettingsBesideThePlantAreCookedWithIt) {
+    const std::string source = write("a.json", "12345");
+    const auto importance = [&] {
+        auto plant = find(source);
+        EXPECT_TRUE(plant) << to_string(plant.error());
+        return plant ? plant->parts[0].importance : 0.0f;
+    };
+    EXPECT_FLOAT_EQ(importance(), 1.0f);
+    const std::string path = *cooked_path(cache_dir(), {source, 0}, {});
+    write("a.json.lod.json", R"({"parts": {"leaf": {"importance": 2}}})");
+    EXPECT_FLOAT_EQ(importance(), 2.0f);
+    EXPECT_NE(*cooked_path(cache_dir(), {source, 0}, {}), path);
+    // Of what is being edited, in place of that.
+    const PlantSource edited{source, 0, std::vector<PartSettings>{{"leaf", PartKind::automatic, 3.0f}}};
+    auto plants = find_or_cook(cache_dir(), std::span(&edited, 1), {}, &k_modeller, nullptr);
+    ASSERT_TRUE(plants);
+    EXPECT_FLOAT_EQ(plants->at(0).parts[0].importance, 3.0f);
+    EXPECT_FLOAT_EQ(importance(), 2.0f);
+    write("a.json.lod.json", R"({"parts": {"leaf": {"importance": "much"}}})");
+    auto refused = find(source);
+    ASSERT_FALSE(refused);
+    EXPECT_NE(to_string(refused.error()).find("a.json.lod.json"), std::string::npos);
+    std::filesystem::remove(dir_ / "a.json.lod.json");
+    EXPECT_FLOAT_EQ(importance(), 1.0f);
 }
 
 }  // namespace

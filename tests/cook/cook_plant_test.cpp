@@ -67,6 +67,41 @@ TEST(CookPlant, SplitsATreeIntoPointsAndLinesByThickness) {
     EXPECT_NEAR(plant.parts[2].area_m2, 3000 * 0.05f * 0.05f, 1e-3f);
 }
 
+// What a person says of a part goes before what its shape and colour do.
+TEST(CookPlant, PartsAreWhatAPersonSetThemTo) {
+    PlantDescription tree = small_tree();
+    const Plant automatic = cook(tree);
+    tree.settings = {{"bark/4", PartKind::points, 2.5f}, {"leaf", PartKind::points, 0.0f}};
+    Plant plant = cook(tree);
+    ASSERT_EQ(plant.parts.size(), 3u);
+    EXPECT_EQ(plant.parts[0].kind, PackedPartKind::lines);
+    EXPECT_EQ(plant.parts[1].kind, PackedPartKind::points);
+    EXPECT_EQ(plant.parts[1].line_count, 0u);
+    EXPECT_GE(plant.parts[1].point_count, 2 * plant.parts[1].triangle_count);
+    EXPECT_FLOAT_EQ(plant.parts[1].importance, 2.5f);
+    EXPECT_FLOAT_EQ(plant.parts[0].importance, automatic.parts[0].importance);
+    EXPECT_FALSE(automatic.crowns.empty());
+    EXPECT_TRUE(plant.crowns.empty()) << "points and nothing else";
+
+    tree.settings = {{"leaf", PartKind::leaves, 0.0f}};
+    plant = cook(tree);
+    ASSERT_EQ(plant.crowns.size(), 1u);
+    EXPECT_EQ(plant.parts[2].flags, k_part_leaf | k_part_prefers_leaves);
+    tree.settings = {{"leaf", PartKind::lines, 0.0f}};
+    plant = cook(tree);
+    EXPECT_EQ(plant.parts[2].kind, PackedPartKind::lines);
+    EXPECT_GT(plant.parts[2].line_count, 1000u);
+
+    tree.settings = {{"bark", PartKind::leaves, 0.0f}};
+    auto refused = cook_plant(tree, {});
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().id, ErrorId::value_out_of_range);
+    // A name that no part has, as after another export, is no reason to have no plant.
+    tree.settings = {{"barque", PartKind::points, 3.0f}};
+    plant = cook(tree);
+    EXPECT_EQ(plant.content_hash, automatic.content_hash);
+}
+
 TEST(CookPlant, EveryPointLiesOnItsOwner) {
     Plant plant = cook(small_tree());
     for (const PackedPart& part : plant.parts) {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include "plugins/vegetation/cook/cook_plant.h"
 #include "tests/foliage/made_crown.h"
-#include "tests/images/plant_picture.h"
+#include "plugins/vegetation/report/plant_picture.h"
 
 namespace coppice {
 namespace {

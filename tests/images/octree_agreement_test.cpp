@@ -2,7 +2,7 @@
 // nearby where each chooses otherwise, and leaving out what lies outside the view changes no pixel.
 #include <gtest/gtest.h>
 #include "tests/images/cook_species.h"
-#include "tests/images/plant_picture.h"
+#include "plugins/vegetation/report/plant_picture.h"
 
 namespace coppice {
 namespace {

@@ -96,7 +96,7 @@ Status load_scene_and_plants(const std::string& scene_path, const std::string& c
     for (const PlantSource& source : sources) {
         if (source.path.ends_with(".plant")) continue;
         COPPICE_TRY(const std::string cooked,
-                    cooked_path(cache_dir, source.path, source.variation, CookSettings{}));
+                    cooked_path(cache_dir, source, CookSettings{}));
         std::error_code error;
         if (!fs::exists(cooked, error))
             return fail(ErrorId::write_failed, cooked, "", "what was cooked cannot be kept in the cache",

@@ -29,7 +29,7 @@ Status list_plants(Pieces& pieces) {
     std::map<std::string, uint32_t> known;
     for (const SceneModel& model : pieces.scene.models) {
         COPPICE_TRY(const std::string path,
-                    cooked_path(pieces.settings.folder, model.source_path, model.variation, CookSettings{}));
+                    cooked_path(pieces.settings.folder, {model.source_path, model.variation}, CookSettings{}));
         const std::string name = pieces.settings.plants + "/" + fs::path(path).filename().string();
         const auto [at, is_new] = known.emplace(name, uint32_t(pieces.plants.size()));
         if (is_new) pieces.plants.push_back({name, model.source_path, model.variation});

@@ -9,6 +9,7 @@
 #include "plugins/vegetation/cook/import/gltf_document.h"
 #include "plugins/vegetation/cook/import/gltf_uri.h"
 #include "plugins/vegetation/cook/import/import_gltf.h"
+#include "plugins/vegetation/cook/part_settings.h"
 #include "runtime/core/file.h"
 #include "runtime/core/hash.h"
 #include "runtime/core/jobs.h"
@@ -65,38 +66,8 @@ Result<uint64_t> hash_references(const std::string& path, std::span<const std::b
     return hash;
 }
 
-Result<std::vector<std::byte>> cook_source(const std::string& source_path, uint64_t variation,
-                                           const CookSettings& settings, const ModellerInterface* modeller,
-                                           const ImagesInterface* images) {
-    COPPICE_TRY(PlantDescription plant, read_plant(source_path, variation, modeller, images));
-    auto bytes = cook_plant(plant, settings);
-    // The description only knows its own name; the reader needs the file.
-    if (!bytes) bytes.error().file = source_path;
-    return bytes;
-}
-
-// unwritten: why the cache could not take what was cooked, where it could not.
-Result<Plant> find_or_cook_one(const std::string& cache_dir, const PlantSource& source,
-                               const CookSettings& settings, const ModellerInterface* modeller,
-                               const ImagesInterface* images, Status& unwritten) {
-    if (kind_of(source.path) == SourceKind::packed) return load_plant(source.path);
-    COPPICE_TRY(const std::string path, cooked_path(cache_dir, source.path, source.variation, settings));
-    Result<Plant> found = load_plant(path);
-    if (found) return found;
-    if (found.error().id != ErrorId::file_missing)
-        log_note("{}; it is cooked again", to_string(found.error()));
-    COPPICE_TRY(std::vector<std::byte> bytes,
-                cook_source(source.path, source.variation, settings, modeller, images));
-    unwritten = write_file(path, bytes);
-    if (unwritten) return load_plant(path);
-    return load_plant_from_memory(std::make_shared<const std::vector<std::byte>>(std::move(bytes)),
-                                  source.path);
-}
-
-}  // namespace
-
-Result<PlantDescription> read_plant(const std::string& source_path, uint64_t variation,
-                                    const ModellerInterface* modeller, const ImagesInterface* images) {
+Result<PlantDescription> read_source(const std::string& source_path, uint64_t variation,
+                                     const ModellerInterface* modeller, const ImagesInterface* images) {
     switch (kind_of(source_path)) {
         case SourceKind::species: {
             if (!modeller)
@@ -117,27 +88,70 @@ Result<PlantDescription> read_plant(const std::string& source_path, uint64_t var
     }
 }
 
+Result<std::vector<PartSettings>> settings_of(const PlantSource& source) {
+    if (source.settings) return *source.settings;
+    return read_part_settings(source.path);
+}
+
+Result<std::vector<std::byte>> cook_source(const PlantSource& source, const CookSettings& settings,
+                                           const ModellerInterface* modeller, const ImagesInterface* images) {
+    COPPICE_TRY(PlantDescription plant, read_source(source.path, source.variation, modeller, images));
+    COPPICE_TRY(plant.settings, settings_of(source));
+    auto bytes = cook_plant(plant, settings);
+    // The description only knows its own name; the reader needs the file.
+    if (!bytes) bytes.error().file = source.path;
+    return bytes;
+}
+
+// unwritten: why the cache could not take what was cooked, where it could not.
+Result<Plant> find_or_cook_one(const std::string& cache_dir, const PlantSource& source,
+                               const CookSettings& settings, const ModellerInterface* modeller,
+                               const ImagesInterface* images, Status& unwritten) {
+    if (kind_of(source.path) == SourceKind::packed) return load_plant(source.path);
+    COPPICE_TRY(const std::string path, cooked_path(cache_dir, source, settings));
+    Result<Plant> found = load_plant(path);
+    if (found) return found;
+    if (found.error().id != ErrorId::file_missing)
+        log_note("{}; it is cooked again", to_string(found.error()));
+    COPPICE_TRY(std::vector<std::byte> bytes, cook_source(source, settings, modeller, images));
+    unwritten = write_file(path, bytes);
+    if (unwritten) return load_plant(path);
+    return load_plant_from_memory(std::make_shared<const std::vector<std::byte>>(std::move(bytes)),
+                                  source.path);
+}
+
+}  // namespace
+
+Result<PlantDescription> read_plant(const std::string& source_path, uint64_t variation,
+                                    const ModellerInterface* modeller, const ImagesInterface* images) {
+    COPPICE_TRY(PlantDescription plant, read_source(source_path, variation, modeller, images));
+    COPPICE_TRY(plant.settings, read_part_settings(source_path));
+    return plant;
+}
+
 Status cook_file(const std::string& source_path, const std::string& out_path, uint64_t variation,
                  const CookSettings& settings, const ModellerInterface* modeller,
                  const ImagesInterface* images) {
     COPPICE_TRY(const std::vector<std::byte> bytes,
-                cook_source(source_path, variation, settings, modeller, images));
+                cook_source({source_path, variation}, settings, modeller, images));
     return write_file(out_path, bytes);
 }
 
-Result<std::string> cooked_path(const std::string& cache_dir, const std::string& source_path,
-                                uint64_t variation, const CookSettings& settings) {
-    COPPICE_TRY(MappedFile source, MappedFile::open(source_path));
-    uint64_t key = hash_bytes(source.bytes().data(), source.bytes().size(), hash_settings(settings));
-    if (kind_of(source_path) == SourceKind::species) {
-        key = hash_combine(key, variation);
+Result<std::string> cooked_path(const std::string& cache_dir, const PlantSource& source,
+                                const CookSettings& settings) {
+    COPPICE_TRY(MappedFile file, MappedFile::open(source.path));
+    uint64_t key = hash_bytes(file.bytes().data(), file.bytes().size(), hash_settings(settings));
+    if (kind_of(source.path) == SourceKind::species) {
+        key = hash_combine(key, source.variation);
         key = hash_combine(key, k_growth_version);
     } else {
-        COPPICE_TRY(const uint64_t referred, hash_references(source_path, source.bytes()));
+        COPPICE_TRY(const uint64_t referred, hash_references(source.path, file.bytes()));
         key = hash_combine(key, referred);
     }
+    COPPICE_TRY(const std::vector<PartSettings> parts, settings_of(source));
+    if (!parts.empty()) key = hash_combine(key, hash_part_settings(parts));
     std::string name =
-        fmt::format("{}-{}.plant", std::filesystem::path(source_path).stem().string(), hash_to_hex(key));
+        fmt::format("{}-{}.plant", std::filesystem::path(source.path).stem().string(), hash_to_hex(key));
     return (std::filesystem::path(cache_dir) / "plants" / name).string();
 }
 

@@ -61,7 +61,8 @@ class PartPacker {
         bool lines = mesh_.kind == PartKind::lines;
         packed_.kind = lines ? PackedPartKind::lines : PackedPartKind::points;
         packed_.flags = (part_.closed ? k_part_closed : 0u) | (mesh_.leaf ? k_part_leaf : 0u) |
-                        (part_.closed && !mesh_.leaf && faces_outwards() ? k_part_faces_outwards : 0u);
+                        (part_.closed && !mesh_.leaf && faces_outwards() ? k_part_faces_outwards : 0u) |
+                        (part_.asked == PartKind::leaves ? k_part_prefers_leaves : 0u);
         packed_.importance = importance_;
         packed_.area_m2 = float(part_.area_m2);
         packed_.projected_area_m2 = fit_direction_form(projected_areas_m2(mesh_, part_.closed));
@@ -81,7 +82,7 @@ class PartPacker {
         }
         plant_.bounds_plant.include(bounds_);
         plant_.parts.push_back(packed_);
-        if (mesh_.leaf && !lines) pack_crown();
+        if (mesh_.leaf && !lines && part_.asked != PartKind::points) pack_crown();
         return {};
     }
 
@@ -282,6 +283,44 @@ void add_part(const PlantBlocks& packed, const PlantBlocks& its_cells, PlantBloc
     plant.bounds_plant.include(packed.bounds_plant);
 }
 
+// Names are those that the packed plant has, so that what a person sees is what is named.
+bool has_name(const CookPart& part, const std::string& name) {
+    char packed[sizeof PackedPart::name];
+    copy_name(part.shape.part.name, packed, sizeof packed);
+    return name == packed;
+}
+
+Status apply_settings(const PlantDescription& plant, const CookSettings& cook, std::vector<CookPart>& parts) {
+    for (const PartSettings& settings : plant.settings) {
+        bool found = false;
+        for (CookPart& part : parts) {
+            PartDescription& mesh = part.shape.part;
+            if (!has_name(part, settings.name)) continue;
+            found = true;
+            if (settings.importance > 0.0f) mesh.importance = settings.importance;
+            part.asked = settings.kind;
+            const bool lines = mesh.kind == PartKind::lines;
+            if (settings.kind == PartKind::leaves && !mesh.leaf)
+                return fail(ErrorId::value_out_of_range, plant.name, "part \"" + settings.name + "\"",
+                            "leaves of a part that has none", "points, lines or automatic");
+            if (settings.kind == PartKind::lines && !lines && cook.lines != LineParts::none) {
+                part.shape.skeleton = trace_skeleton(mesh, weld_positions(mesh.vertices));
+                mesh.kind = PartKind::lines;
+            }
+            if (lines && (settings.kind == PartKind::points || settings.kind == PartKind::leaves)) {
+                part.shape.skeleton = {};
+                mesh.kind = PartKind::points;
+            }
+        }
+        if (found) continue;
+        std::vector<std::string> known;
+        for (const CookPart& part : parts) known.push_back(part.shape.part.name);
+        log_warning("{}: there is no part \"{}\" to set anything of; parts: {}", plant.name, settings.name,
+                    fmt::join(known, ", "));
+    }
+    return {};
+}
+
 void add_cells(const PlantBlocks& cells, PlantBlocks& plant) {
     for (PackedPart cell : cells.cells) {
         cell.first_point += uint32_t(plant.points.size());
@@ -356,6 +395,7 @@ Result<std::vector<std::byte>> cook_plant(const PlantDescription& plant, const C
                  k_part_limit);
         parts = merge_parts(std::move(parts));
     }
+    COPPICE_CHECK(apply_settings(plant, settings, parts));
 
     uint64_t point_count = 0;
     std::vector<ColoredArea> colors;

@@ -12,6 +12,7 @@ inline constexpr uint32_t k_part_limit = 64;
 struct CookPart {
     SlenderPart shape;  // classified: points or lines
     bool closed = false;
+    PartKind asked = PartKind::automatic;  // by a person
     double area_m2 = 0.0;
     vec3 mean_color_linear{0};
 };

@@ -60,7 +60,7 @@ PartRule::PartRule(const PackedPart& part, const FrameSettings& settings, LeafLe
     line_width_px_ = line_d_px_ / importance_;
     if (leaves.full_count == 0 || !is_points_ || always_triangles_ || settings.foliage == FoliageMode::points)
         return;
-    const LeafRange range = settings.foliage == FoliageMode::leaves
+    const LeafRange range = settings.foliage == FoliageMode::leaves || part.flags & k_part_prefers_leaves
                                 ? whole_leaf_range(part, leaves.least_count)
                                 : automatic_leaf_range(part, leaves.full_count, leaves.least_count);
     // Each plant's own beginning is within a quarter of it.

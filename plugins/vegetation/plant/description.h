@@ -11,8 +11,23 @@ namespace coppice {
 // Of every coordinate of a plant, in the description and packed. Beyond it a float no longer resolves a leaf.
 inline constexpr float k_position_limit_m = 1e5f;
 
-// What a part turns into in the distance. automatic: the cook decides by shape.
-enum class PartKind : uint8_t { automatic, points, lines };
+// What a part turns into in the distance.
+enum class PartKind : uint8_t {
+    automatic,  // the cook decides by shape
+    points,     // of PartSettings: and nothing else
+    lines,
+    leaves,  // of PartSettings alone: leaves, joined by and by, as far as there are levels of them, then points
+};
+
+inline constexpr float k_importance_limit = 1000.0f;
+
+// What a person decided of all parts of that name as they come out of the cook (cook/part_settings.h).
+struct PartSettings {
+    std::string name;
+    PartKind kind = PartKind::automatic;
+    float importance = 0.0f;  // up to k_importance_limit; 0: as it would be
+    bool operator==(const PartSettings&) const = default;
+};
 
 struct DescriptionVertex {
     vec3 position_plant;
@@ -45,6 +60,7 @@ struct PartDescription {
 struct PlantDescription {
     std::string name;
     std::vector<PartDescription> parts;
+    std::vector<PartSettings> settings;
     uint32_t dropped_vertices = 0;  // of the author's file, used by no triangle and left out already
 };
 

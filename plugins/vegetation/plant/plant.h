@@ -40,6 +40,7 @@ inline constexpr uint32_t k_part_closed = 1;  // of a closed surface only the fr
 inline constexpr uint32_t k_part_leaf = 2;    // lit from both sides
 inline constexpr uint32_t k_part_faces_outwards =
     4;  // closed, and wound so that back faces need not be drawn
+inline constexpr uint32_t k_part_prefers_leaves = 8;  // its crown's leaves are drawn wherever there are some
 
 enum class PackedPartKind : uint32_t { points = 0, lines = 1 };
 

@@ -312,7 +312,7 @@ class Importer {
         }
         for (size_t p = 0; p < parts_.size(); ++p)
             if (parts_[p].leaf) group_by_element(parts_[p], elements[p], element_counts[p]);
-        return PlantDescription{plant_name, std::move(parts_),
+        return PlantDescription{plant_name, std::move(parts_), {},
                                 uint32_t(std::min<uint64_t>(dropped_vertices_, UINT32_MAX))};
     }
 

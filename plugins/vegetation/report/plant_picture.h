@@ -1,10 +1,11 @@
-// Draws one packed plant from any side and size, and reads depth and surface words back.
+// One packed plant drawn from any side and at any size, for measurements: depth and surface words are read back.
 #pragma once
 #include <memory>
 #include <vector>
+#include "plugins/vegetation/draw/expand_plants.h"
+#include "plugins/vegetation/draw/rasteriser.h"
 #include "plugins/vegetation/plant/surface.h"
 #include "runtime/gpu/commands.h"
-#include "tests/draw/expand_run.h"
 
 namespace coppice {
 
@@ -59,8 +60,9 @@ class PlantPicture {
         PlantTurn turn{0, 0, 0, 32767};
         PlantModel plant_model{0, seed_ = mix_seed(seed_)};
         work_.begin(1);
-        counts_ = expand_run({vec3(0.0f), inside, {&position, 1}, {&turn, 1}, {&plant_model, 1}}, geometry_,
-                             frustum, settings, 0, seen_, work_.part(0));
+        see_plants({vec3(0.0f), inside, {&position, 1}, {&turn, 1}, {&plant_model, 1}}, geometry_, frustum,
+                   nullptr, 0.0f, seen_);
+        draw_plants(seen_, geometry_, settings, 0, work_.part(0));
         WorkList::Size size = work_.size();
         if (size.entries > rasteriser_->entries(0).size())
             COPPICE_CHECK(rasteriser_->grow(0, size.instances, size.entries));
@@ -105,7 +107,6 @@ class PlantPicture {
     Plant plant_;
     SeenPlants seen_;
     WorkList work_;
-    ExpandCounts counts_;
     uint32_t seed_ = 1;
 };
 

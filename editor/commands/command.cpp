@@ -21,6 +21,7 @@ constexpr Command k_commands[] = {
     {"set_population", make_set_population},
     {"rename_population", make_rename_population},
     {"remove_population", make_remove_population},
+    {"set_part", make_set_part},
     {"add_rule", make_add_rule},
     {"set_rule", make_set_rule},
     {"remove_rule", make_remove_rule},
@@ -40,6 +41,9 @@ constexpr Command k_commands[] = {
 Status check_plants(const Document& document, const Edit& edit) {
     for (const FileEdit& change : edit.files) {
         const EcoFile* file = document.find(change.path);
+        if (file && file->is_made_up)
+            return fail(ErrorId::usage, change.path, "", "a plant is open, and no scene",
+                        "set_part, undo, redo and save; or open a scene, NAME.eco.json");
         if (file && file->plants_lost && !(change.removed.empty() && change.added.empty()))
             return fail(ErrorId::file_corrupt, file->placed_path, "",
                         "its plants could not be read, so none are placed beside them",

@@ -22,6 +22,7 @@ Result<Edit> make_add_population(const CommandContext&, JsonObject&);
 Result<Edit> make_set_population(const CommandContext&, JsonObject&);
 Result<Edit> make_rename_population(const CommandContext&, JsonObject&);
 Result<Edit> make_remove_population(const CommandContext&, JsonObject&);
+Result<Edit> make_set_part(const CommandContext&, JsonObject&);
 // rules.cpp
 Result<Edit> make_add_rule(const CommandContext&, JsonObject&);
 Result<Edit> make_set_rule(const CommandContext&, JsonObject&);

@@ -90,6 +90,18 @@ Document Document::make(const std::string& path) {
     return document;
 }
 
+Document Document::for_plant(const std::string& plant_path) {
+    const std::filesystem::path plant = std::filesystem::path(plant_path).lexically_normal();
+    Document document;
+    document.root_path_ = plant.string() + k_ending;
+    EcoFile& file = document.files_[document.root_path_];
+    file.text = print_scene_text({{"plants", {{plant.stem().string(), {{"source", plant.filename().string()}}}}},
+                                  {"placements", nlohmann::ordered_json::array()}});
+    file.placed_path = placed_path_of(document.root_path_, *file.text);
+    file.is_made_up = true;
+    return document;
+}
+
 Result<Document> Document::open(const std::string& path) {
     Document document;
     document.root_path_ = std::filesystem::path(path).lexically_normal().string();
@@ -173,7 +185,7 @@ bool Document::apply(const Edit& edit) {
 }
 
 std::optional<std::string> Document::text_bytes(const EcoFile& file) const {
-    if (!file.text) return {};
+    if (!file.text || file.is_made_up) return {};
     return file.text->text;
 }
 
@@ -195,6 +207,8 @@ uint64_t Document::hash() const {
 
 bool Document::saved() const {
     for (const auto& [path, file] : files_) {
+        if (file.is_made_up) continue;
+        if (!file.text && file.saved_text_hash) return false;
         if (!file.text) continue;
         if (file.saved_text_hash != hash_text(file.text->text)) return false;
         if (const auto plants = plants_bytes(file); plants && file.saved_plants_hash != hash_text(*plants))
@@ -224,6 +238,14 @@ Status Document::save() {
     for (const Write& write : writes) {
         COPPICE_CHECK(write_text_file(write.path, write.bytes));
         *write.saved_hash = write.hash;
+    }
+    // Of files whose making was undone.
+    for (auto& [path, file] : files_) {
+        if (file.text || !file.saved_text_hash) continue;
+        COPPICE_CHECK(back_up(path));
+        std::error_code ignored;
+        std::filesystem::remove(path, ignored);
+        file.saved_text_hash.reset();
     }
     return {};
 }

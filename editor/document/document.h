@@ -15,6 +15,7 @@ struct EcoFile {
     std::string placed_path;  // where they are saved
     bool plants_lost =
         false;  // they are there but could not be read: nothing is placed here, and nothing written over them
+    bool is_made_up = false;  // to show a plant by itself: it is not saved
     // What is on the disk as far as is known; none: no file.
     std::optional<uint64_t> saved_text_hash, saved_plants_hash;
 };
@@ -25,6 +26,9 @@ class Document {
     static Result<Document> open(const std::string& path);
     // One that does not exist yet, with nothing in it.
     static Document make(const std::string& path);
+    // A scene of one population, named and seen as the plant is, that is never saved: what is set of the plant's parts is. Its
+    // root lies beside the plant.
+    static Document for_plant(const std::string& plant_path);
 
     const std::string& root_path() const { return root_path_; }
     EcoFile& root() { return files_.at(root_path_); }

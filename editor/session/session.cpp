@@ -16,6 +16,22 @@ std::optional<std::string> bytes_of(const std::string& path) {
     return bytes ? std::optional(std::move(*bytes)) : std::nullopt;
 }
 
+// A species file has a form, which scenes have not.
+bool is_plant(const std::string& path) {
+    if (path.ends_with(".glb") || path.ends_with(".gltf")) return true;
+    if (!path.ends_with(".json")) return false;
+    const auto bytes = bytes_of(path);
+    if (!bytes) return false;
+    const auto json = nlohmann::json::parse(*bytes, nullptr, false);
+    return json.is_object() && json.contains("form") && !json.contains("placements");
+}
+
+Result<Document> open_document(const std::string& path) {
+    std::error_code ignored;
+    if (!std::filesystem::exists(path, ignored)) return Document::make(path);
+    return is_plant(path) ? Document::for_plant(path) : Document::open(path);
+}
+
 void remove_file(const std::string& path) {
     std::error_code ignored;
     std::filesystem::remove(path, ignored);
@@ -24,14 +40,13 @@ void remove_file(const std::string& path) {
 }  // namespace
 
 Result<std::unique_ptr<Session>> Session::open(const std::string& path, const Settings& settings) {
-    std::error_code ignored;
-    const bool exists = std::filesystem::exists(path, ignored);
-    Result<Document> document = exists ? Document::open(path) : Document::make(path);
-    if (!document) return fail(std::move(document.error()));
-    std::unique_ptr<Session> session(new Session(std::move(*document)));
+    COPPICE_TRY(Document document, open_document(path));
+    std::unique_ptr<Session> session(new Session(std::move(document)));
     session->settings_ = settings;
+    session->path_ = path;
     session->warnings_ = session->document_.faults();
     const std::string journal = journal_path(session->document_.root_path());
+    std::error_code ignored;
     if (settings.journal && std::filesystem::exists(journal, ignored)) {
         COPPICE_CHECK(Journal::check_free(journal));
         auto content = Journal::read(journal);
@@ -81,13 +96,7 @@ Status Session::restore_base(const JournalContent& journal) {
         COPPICE_CHECK(write_text_file(path, bytes));
         if (newer) COPPICE_CHECK(write_text_file(path + ".bak", *newer));
     }
-    std::error_code ignored;
-    const std::string root = document_.root_path();
-    if (!std::filesystem::exists(root, ignored)) {
-        document_ = Document::make(root);
-    } else {
-        COPPICE_TRY(document_, Document::open(root));
-    }
+    COPPICE_TRY(document_, open_document(path_));
     return {};
 }
 
@@ -103,7 +112,11 @@ Result<size_t> Session::recover() {
     std::vector<Edit> edits;
     for (const std::string& bytes : written) {
         auto edit = read_edit(bytes, path, [&](const std::string& name) { return document_.kind_of(name); });
-        if (!edit || !document_.apply(*edit)) break;
+        if (!edit) break;
+        // What is read only when it is edited.
+        for (const FileEdit& file : edit->files)
+            if (file.before && !document_.find(file.path)) (void)document_.read(file.path);
+        if (!document_.apply(*edit)) break;
         edits.push_back(std::move(*edit));
     }
     // The journal is written again, so that nothing is lost should this run be killed as well.

@@ -17,7 +17,7 @@ class Session {
         const TerrainInterface* terrain = nullptr;  // null: the ground is the plane y = 0
         bool journal = true;
     };
-    // A path without a file starts a scene there. Errors: Document::open's; write_failed where another editor has it open.
+    // A path without a file starts a scene there; a plant is opened by itself. Errors: Document::open's; write_failed where another editor has it open.
     static Result<std::unique_ptr<Session>> open(const std::string& path, const Settings& settings);
     // Leaves the journal where something is not saved.
     ~Session();
@@ -71,6 +71,7 @@ class Session {
     Status restore_base(const JournalContent& journal);
 
     Settings settings_;
+    std::string path_;
     Document document_;
     History history_;
     Edit open_edit_;

@@ -6,6 +6,7 @@
 #include <set>
 #include <fmt/format.h>
 #include "plugins/vegetation/cook/cook_file.h"
+#include "plugins/vegetation/cook/part_settings.h"
 #include "plugins/vegetation/eco/load_scene.h"
 #include "plugins/vegetation/eco/make_tiles.h"
 #include "plugins/vegetation/eco/scene_file.h"
@@ -175,10 +176,21 @@ Result<Scene> load_what_can_be(Texts& texts, const std::string& path, const Base
     }
 }
 
-// Boxes stand for models that cannot be read or cooked.
-Result<std::vector<Plant>> load_plants(const std::vector<SceneModel>& models, const Plant& box,
-                                       const BaseSceneSettings& settings, std::vector<Error>& faults) {
+// Boxes stand for models that cannot be read or cooked. Settings that make no sense are left out.
+Result<std::vector<Plant>> load_plants(const Document& document, const std::vector<SceneModel>& models,
+                                       const Plant& box, const BaseSceneSettings& settings,
+                                       std::vector<Error>& faults) {
     std::set<std::string> bad;
+    std::map<std::string, std::vector<PartSettings>> parts_of;
+    for (const SceneModel& model : models) {
+        auto [parts, is_new] = parts_of.try_emplace(model.source_path);
+        if (!is_new) continue;
+        auto read = part_settings_in(document, model.source_path);
+        if (read)
+            parts->second = std::move(*read);
+        else
+            faults.push_back(read.error());
+    }
     std::error_code ignored;
     for (const SceneModel& model : models)
         if (!bad.contains(model.source_path) && !std::filesystem::exists(model.source_path, ignored)) {
@@ -192,7 +204,7 @@ Result<std::vector<Plant>> load_plants(const std::vector<SceneModel>& models, co
         bool textured = false;
         for (const SceneModel& model : models) {
             if (bad.contains(model.source_path)) continue;
-            sources.push_back({model.source_path, model.variation});
+            sources.push_back({model.source_path, model.variation, parts_of[model.source_path]});
             textured |= !model.source_path.ends_with(".json") && !model.source_path.ends_with(".plant");
         }
         auto found = find_or_cook(settings.cache_dir, sources, CookSettings{}, settings.modeller,
@@ -215,6 +227,15 @@ Result<std::vector<Plant>> load_plants(const std::vector<SceneModel>& models, co
 
 }  // namespace
 
+Result<std::vector<PartSettings>> part_settings_in(const Document& document,
+                                                   const std::string& plant_path) {
+    const std::string path = part_settings_path(std::filesystem::path(plant_path).lexically_normal().string());
+    const EcoFile* file = document.find(path);
+    if (!file) return read_part_settings(plant_path);
+    if (!file->text) return std::vector<PartSettings>();
+    return parse_part_settings(file->text->text, path);
+}
+
 Result<BaseScene> make_base_scene(const Document& document, const BaseSceneSettings& settings) {
     BaseScene base;
     auto clock = std::chrono::steady_clock::now();
@@ -223,7 +244,7 @@ Result<BaseScene> make_base_scene(const Document& document, const BaseSceneSetti
     base.scene_ms = ms_since(clock);
     clock = std::chrono::steady_clock::now();
     COPPICE_TRY(Plant box, find_or_make_box(settings.cache_dir));
-    COPPICE_TRY(base.plants, load_plants(base.scene.models, box, settings, base.faults));
+    COPPICE_TRY(base.plants, load_plants(document, base.scene.models, box, settings, base.faults));
     base.box.individuals = {{uint32_t(base.plants.size()), 1.0f}};
     base.scene.models.push_back({"missing plant", "", 0, 1.0f});
     base.plants.push_back(std::move(box));

@@ -29,6 +29,9 @@ struct BaseSceneSettings {
 // Errors: where not even an empty scene of it loads.
 Result<BaseScene> make_base_scene(const Document& document, const BaseSceneSettings& settings);
 
+// What is set of a plant's parts: as the document has it, or else as it stands beside the plant. Errors: those of reading it.
+Result<std::vector<PartSettings>> part_settings_in(const Document& document, const std::string& plant_path);
+
 // Changes where the base scene of the document does.
 uint64_t hash_base(const Document& document);
 

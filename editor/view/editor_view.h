@@ -45,6 +45,7 @@ class EditorView {
     size_t base_plant_count(const std::string& kind) const;
     const std::vector<CameraKey>& camera_path() const { return camera_path_; }
     float sample_distance_px() const { return sample_distance_px_; }
+    const BaseSceneSettings& base_settings() const { return base_settings_; }
     struct Times {
         double scene_ms = 0.0, plants_ms = 0.0, tiles_ms = 0.0, upload_ms = 0.0, loose_ms = 0.0;
     };

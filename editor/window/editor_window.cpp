@@ -10,6 +10,7 @@
 #include "plugins/vegetation/eco/ground_height.h"
 #include "editor/window/overlay.h"
 #include "editor/window/panels.h"
+#include "editor/window/plant_panels.h"
 #include "editor/window/window_interface.h"
 #include "runtime/plugin/plugin.h"
 #include "runtime/window/swapchain.h"
@@ -21,6 +22,7 @@ namespace coppice {
 namespace {
 
 constexpr uint32_t k_accumulate_limit = 16;
+constexpr float k_coarsest_px = 4.0f;  // where frames are slow whatever they draw, plants are not given up for it
 constexpr float k_walk_m_per_s = 6.0f, k_fast_factor = 6.0f, k_turn_rad_per_px = 0.004f,
                 k_pitch_limit_rad = 1.55f;
 constexpr double k_idle_wait_s = 0.1;
@@ -54,6 +56,7 @@ class EditorWindow {
     ~EditorWindow() {
         overlay_.reset();
         swapchain_ = {};
+        plant_.reset();
         view_.reset();
         if (imgui_) {
             ImGui_ImplGlfw_Shutdown();
@@ -122,6 +125,8 @@ class EditorWindow {
         settings_of_frame_.sample_distance_px = view_->sample_distance_px();
         settings_of_frame_.accumulate_limit = k_accumulate_limit;
         settings_of_frame_.time_budget_ms = state_.target_ms;
+        settings_of_frame_.most_sample_distance_px = k_coarsest_px;
+        if (session_.document().root().is_made_up) COPPICE_CHECK(open_plant(tools_.active));
         return {};
     }
 
@@ -180,14 +185,25 @@ class EditorWindow {
     // Whether the next frame would differ without an event.
     bool is_busy() const {
         const ImGuiIO& io = ImGui::GetIO();
+        if (plant_ && (plant_->work().is_cooking() || plant_->work().is_measuring())) return true;
         return moved_ || io.MouseDown[0] || io.MouseDown[1] || io.WantTextInput ||
-               view_->vegetation->report().rested_frames < k_accumulate_limit;
+               (!plant_ && view_->vegetation->report().rested_frames < k_accumulate_limit);
     }
 
     Status fit(uint32_t width, uint32_t height) {
         if (width == view_->width && height == view_->height) return {};
         COPPICE_CHECK(view_->resize(width, height));
+        if (plant_) COPPICE_CHECK(plant_->stage().resize(width, height));
         return overlay_->resize(width, height);
+    }
+
+    Status open_plant(const std::string& population) {
+        tools_.stop(session_);
+        const BaseSceneSettings& base = view_->base_settings();
+        PlantWork::Settings work{base.cache_dir, settings_.device, base.modeller, base.find_images()};
+        COPPICE_TRY(plant_, PlantEditor::open(registry_, session_, population, *view_->device, work, view_->width,
+                                            view_->height));
+        return {};
     }
 
     void ask_to_close() {
@@ -231,6 +247,10 @@ class EditorWindow {
             tools_.brush.radius_m = std::clamp(tools_.brush.radius_m * factor, 0.2f, 100.0f);
         if (press.repeated) return;
         if (press.mods & GLFW_MOD_CONTROL) return handle_control_key(press.key, shift);
+        if (plant_) {
+            state_.wants_scene = press.key == GLFW_KEY_ESCAPE && !session_.document().root().is_made_up;
+            return;
+        }
         switch (press.key) {
             case GLFW_KEY_B:
                 return take(Tool::brush);
@@ -371,10 +391,68 @@ class EditorWindow {
         }
     }
 
+    void note_warnings() {
+        for (Error& warning : session_.take_warnings()) {
+            state_.note = to_string(warning);
+            state_.warnings.push_back(std::move(warning));
+        }
+    }
+
+    // Drawn, shown and waited for.
+    Status present(const gpu::CommandRing::Frame& drawn, const gpu::Buffer& picture) {
+        overlay_->record(drawn.commands, picture, ImGui::GetDrawData());
+        COPPICE_CHECK(swapchain_.present(view_->ring, drawn.commands, overlay_->pixels(),
+                                         {view_->width, view_->height}, {view_->width, view_->height}));
+        return view_->ring.wait(drawn.serial);
+    }
+
+    void walk_around() {
+        const ImGuiIO& io = ImGui::GetIO();
+        StageView& view = plant_->view;
+        moved_ = false;
+        if (io.WantCaptureMouse) return;
+        if (io.MouseDown[1]) {
+            view.yaw_rad -= io.MouseDelta.x * k_turn_rad_per_px;
+            view.pitch_rad =
+                std::clamp(view.pitch_rad - io.MouseDelta.y * k_turn_rad_per_px, -k_pitch_limit_rad, k_pitch_limit_rad);
+        }
+        view.zoom = std::clamp(view.zoom * std::exp2(0.15f * io.MouseWheel), 0.1f, 20.0f);
+        moved_ = io.MouseDown[1] || io.MouseWheel != 0.0f;
+    }
+
+    Status plant_frame() {
+        handle_keys();
+        pointer_.clear();
+        walk_around();
+        plant_->follow(session_);
+        draw_plant_panels(session_, *plant_, state_);
+        if (std::exchange(state_.wants_save, false)) save();
+        note_warnings();
+        ImGui::Render();
+        const FreeColumns free = plant_free_columns(state_.scale);
+        COPPICE_TRY(const gpu::CommandRing::Frame drawn,
+                    plant_->stage().begin_frame(view_->ring, plant_->view, free.low_px, free.high_px));
+        COPPICE_CHECK(present(drawn, plant_->stage().vegetation().color()));
+        if (std::exchange(state_.wants_scene, false)) plant_.reset();
+        return {};
+    }
+
     Status frame(float step_s) {
         overlay_->begin_frame();
         ImGui_ImplGlfw_NewFrame();
         ImGui::NewFrame();
+        if (plant_) {
+            COPPICE_CHECK(plant_frame());
+        } else {
+            COPPICE_CHECK(scene_frame(step_s));
+        }
+        show_title();
+        // Fonts are made anew before anything of the next frame refers to them.
+        if (scale_by_ != 1.0f) set_scale(state_.scale * scale_by_);
+        return {};
+    }
+
+    Status scene_frame(float step_s) {
         const ImGuiIO& io = ImGui::GetIO();
         const ViewSize size{float(view_->width), float(view_->height)};
         fly(step_s);
@@ -384,32 +462,28 @@ class EditorWindow {
         draw_marks();
         draw_panels(session_, tools_, *view_, figures_, state_);
         if (std::exchange(state_.wants_save, false)) save();
-        for (Error& warning : session_.take_warnings()) {
-            state_.note = to_string(warning);
-            state_.warnings.push_back(std::move(warning));
-        }
+        note_warnings();
         ImGui::Render();
 
         if (Status followed = view_->follow(session_); !followed) state_.note = to_string(followed.error());
         settings_of_frame_.shadows = state_.shadows ? ShadowKind::clipmap : ShadowKind::none;
         const double begin_ms = now_ms();
         COPPICE_TRY(const gpu::CommandRing::Frame drawn, view_->begin_frame(camera_, settings_of_frame_));
-        overlay_->record(drawn.commands, view_->vegetation->color(), ImGui::GetDrawData());
-        COPPICE_CHECK(swapchain_.present(view_->ring, drawn.commands, overlay_->pixels(),
-                                         {view_->width, view_->height}, {view_->width, view_->height}));
-        COPPICE_CHECK(view_->ring.wait(drawn.serial));
+        COPPICE_CHECK(present(drawn, view_->vegetation->color()));
         view_->tell_frame_ms(now_ms() - begin_ms);
         const FrameReport& report = view_->vegetation->report();
         figures_.sample_distance_px = report.sample_distance_px;
         figures_.vertices = report.vertices;
-        show_title();
-        // Fonts are made anew before anything of the next frame refers to them.
-        if (scale_by_ != 1.0f) set_scale(state_.scale * scale_by_);
+        if (const std::string plant = std::exchange(state_.wants_plant, {}); !plant.empty())
+            if (Status opened = open_plant(plant); !opened) state_.note = to_string(opened.error());
         return {};
     }
 
     void show_title() {
-        std::string title = std::filesystem::path(session_.document().root_path()).filename().string() +
+        const Document& document = session_.document();
+        const std::string scene = std::filesystem::path(document.root_path()).filename().string();
+        // A plant by itself lies in a scene that nobody named.
+        std::string title = (document.root().is_made_up ? plant_->population() : scene) +
                             (session_.saved() ? "" : " *") + " - Coppice";
         if (title == title_) return;
         title_ = std::move(title);
@@ -421,6 +495,7 @@ class EditorWindow {
     const EditorWindowSettings& settings_;
     GLFWwindow* window_ = nullptr;
     std::unique_ptr<EditorView> view_;
+    std::unique_ptr<PlantEditor> plant_;  // in place of the scene
     Swapchain swapchain_;
     std::unique_ptr<Overlay> overlay_;
     bool imgui_ = false;

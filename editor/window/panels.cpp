@@ -166,6 +166,8 @@ void draw_populations(Session& session, Tools& tools, const EditorView& view, Pa
         if (ImGui::IsItemDeactivatedAfterEdit())
             tools.perform(session, "set_population",
                           {{"name", tools.active}, {"importance", state.importance_draft}});
+        if (ImGui::Button("levels of detail ...")) state.wants_plant = tools.active;
+        explain("the plant beside what stands for it; kind and importance by part");
     }
     if (ImGui::TreeNode("new population")) {
         ImGui::InputText("name", state.new_name, sizeof state.new_name);
@@ -297,6 +299,17 @@ void draw_faults(const EditorView& view, const Session& session, PanelState& sta
         }
 }
 
+constexpr const char* k_help =
+    "Right mouse: look     W A S D Q E: fly, Shift fast     wheel: forward and back\n"
+    "B brush   P polygon   T place   V select     1 to 9: population\n"
+    "Brush: Shift erases all, Ctrl erases the active population, [ ] radius, Shift [ ] density, Alt-click "
+    "picks\n"
+    "Ctrl Z undo   Ctrl Y redo   Ctrl S save   Ctrl Q close   Ctrl + - size of all text   Del deletes what "
+    "is "
+    "selected   F1 this";
+
+}  // namespace
+
 void draw_questions(Session& session, PanelState& state) {
     const ImVec2 middle(ImGui::GetIO().DisplaySize.x * 0.5f, ImGui::GetIO().DisplaySize.y * 0.5f);
     auto begin = [&](const char* name) {
@@ -343,17 +356,6 @@ void draw_questions(Session& session, PanelState& state) {
         ImGui::EndPopup();
     }
 }
-
-constexpr const char* k_help =
-    "Right mouse: look     W A S D Q E: fly, Shift fast     wheel: forward and back\n"
-    "B brush   P polygon   T place   V select     1 to 9: population\n"
-    "Brush: Shift erases all, Ctrl erases the active population, [ ] radius, Shift [ ] density, Alt-click "
-    "picks\n"
-    "Ctrl Z undo   Ctrl Y redo   Ctrl S save   Ctrl Q close   Ctrl + - size of all text   Del deletes what "
-    "is "
-    "selected   F1 this";
-
-}  // namespace
 
 void apply_theme(bool dark, float scale) {
     ImGui::GetStyle() = ImGuiStyle();

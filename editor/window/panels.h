@@ -14,6 +14,10 @@ struct PanelState {
     bool closing = false;  // the question is asked
     bool closed = false;
     bool recovering = false;  // likewise, at the start
+    std::string wants_plant;  // the population whose plant view is asked for
+    bool wants_scene = false;
+    int tried_part = -1;  // of a plant, whose importance is being dragged
+    float tried_importance = 1.0f;
     std::string note;         // "saved", or why not
     std::vector<Error> warnings;
     char new_name[64] = "", new_source[256] = "", new_tile[128] = "";
@@ -33,6 +37,9 @@ struct ViewFigures {
 void apply_theme(bool dark, float scale);
 // Fonts of the display's resolution; false: only the built-in one was found.
 bool load_fonts(float scale);
+
+// Before closing, and where unsaved work was found.
+void draw_questions(Session& session, PanelState& state);
 
 // The whole of a frame's panels; needs a frame of ImGui that has begun. width of the view that stays free: view_low to view_high.
 void draw_panels(Session& session, Tools& tools, const EditorView& view, const ViewFigures& figures,

@@ -1,6 +1,7 @@
 // Brushes and polygons: paint, erase, fill.
 #include "editor/commands/brush.h"
 #include "editor/commands/commands.h"
+#include "editor/commands/rule_names.h"
 
 namespace coppice {
 namespace {
@@ -30,7 +31,7 @@ std::vector<dvec2> read_stroke(JsonObject& arguments) {
 Result<Edit> make_paint(const CommandContext& context, JsonObject& arguments) {
     const Target target = read_target(context, arguments);
     if (!target.file) return Edit{};
-    COPPICE_TRY(const SceneNames names, names_of(context.document, *target.file, target.path));
+    COPPICE_TRY(const SceneNames names, rule_names_of(context, target));
     const Region under_brush{{RegionShape{}}};
     const BrushRule rule = read_brush_rule(arguments, names, target.terrain, &under_brush);
     if (arguments.document().sound() && !(rule.scatter.density_per_m2 > 0.0))
@@ -72,7 +73,7 @@ Result<Edit> make_erase(const CommandContext& context, JsonObject& arguments) {
 Result<Edit> make_fill(const CommandContext& context, JsonObject& arguments) {
     const Target target = read_target(context, arguments);
     if (!target.file) return Edit{};
-    COPPICE_TRY(const SceneNames names, names_of(context.document, *target.file, target.path));
+    COPPICE_TRY(const SceneNames names, rule_names_of(context, target));
     const nlohmann::json* polygon = arguments.find("polygon");
     Region where;
     if (polygon)

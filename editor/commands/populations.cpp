@@ -40,6 +40,19 @@ bool is_free_name(JsonObject& arguments, const Json& json, const char* key, cons
     return false;
 }
 
+// "from" of one rule of distance, or of a list of them.
+template <class Visit>
+void visit_distance(Json& distance, Visit&& visit) {
+    if (distance.is_array())
+        for (Json& each : distance) visit_distance(each, visit);
+    if (!distance.is_object() || !distance.contains("from")) return;
+    Json& from = distance["from"];
+    if (from.is_string()) visit(from);
+    if (from.is_array())
+        for (Json& name : from)
+            if (name.is_string()) visit(name);
+}
+
 // Where placements name plants: calls visit(object, key) for each.
 template <class Visit>
 void each_use(Json& json, Visit&& visit) {
@@ -55,6 +68,8 @@ void each_use(Json& json, Visit&& visit) {
             look(*scatter);
             if (auto shares = scatter->find("plants"); shares != scatter->end() && shares->is_object())
                 visit(*shares);
+            if (auto distance = scatter->find("distance"); distance != scatter->end())
+                visit_distance(*distance, visit);
         }
         if (auto species = placement.find("species"); species != placement.end() && species->is_object())
             for (auto& [alias, name] : species->items())

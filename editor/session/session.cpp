@@ -30,6 +30,7 @@ Result<std::unique_ptr<Session>> Session::open(const std::string& path, const Se
     if (!document) return fail(std::move(document.error()));
     std::unique_ptr<Session> session(new Session(std::move(*document)));
     session->settings_ = settings;
+    session->pictures_ = MapPictures(settings.find_images);
     session->warnings_ = session->document_.faults();
     const std::string journal = journal_path(session->document_.root_path());
     if (settings.journal && std::filesystem::exists(journal, ignored)) {

@@ -165,7 +165,7 @@ Result<Plant> find_or_make_box(const std::string& cache_dir) {
 Result<Scene> load_what_can_be(Texts& texts, const std::string& path, const BaseSceneSettings& settings,
                                std::vector<Error>& faults) {
     SceneLoadSettings load{settings.terrain, settings.modeller, settings.cache_dir,
-                           [&](const std::string& file) { return texts.read(file); }};
+                           [&](const std::string& file) { return texts.read(file); }, settings.find_images};
     while (true) {
         Result<Scene> scene = load_scene(path, load);
         if (scene || faults.size() >= k_fault_limit) return scene;

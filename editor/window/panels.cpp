@@ -43,6 +43,32 @@ void count_plants(const Session& session, PanelState& state) {
         state.counts[session.document().kinds()[kind]] = counts[kind];
 }
 
+void draw_map_and_distance(const Session& session, BrushSettings& brush) {
+    ImGui::InputText("map", brush.map, sizeof brush.map);
+    explain("a picture, as seen from the scene's folder: plants stand where it is bright");
+    if (brush.map[0]) {
+        ImGui::DragFloat("map side", &brush.map_side_m, 1.0f, 0.0f, 1e6f, "%.0f m");
+        explain("of a square about the origin; 0: all the ground");
+        ImGui::SameLine();
+        ImGui::Checkbox("dark", &brush.map_inverted);
+        explain("plants stand where the picture is dark");
+    }
+    const auto& json = session.document().root().text->json;
+    const auto plants = json.find("plants");
+    if (plants == json.end() || !plants->is_object()) return;
+    if (ImGui::BeginCombo("distance to", brush.distance_from.empty() ? "-" : brush.distance_from.c_str())) {
+        if (ImGui::Selectable("-", brush.distance_from.empty())) brush.distance_from.clear();
+        for (const auto& [name, entry] : plants->items())
+            if (ImGui::Selectable(name.c_str(), brush.distance_from == name)) brush.distance_from = name;
+        ImGui::EndCombo();
+    }
+    explain("of that population's plants that stand already");
+    if (brush.distance_from.empty()) return;
+    ImGui::DragFloat("at least", &brush.distance_least_m, 0.1f, 0.0f, 1000.0f, "%.1f m");
+    ImGui::DragFloat("at most", &brush.distance_most_m, 0.1f, 0.0f, 1000.0f, "%.1f m");
+    explain("0: any distance");
+}
+
 void draw_tools(Session& session, Tools& tools) {
     for (const Tool tool : {Tool::brush, Tool::polygon, Tool::place, Tool::select}) {
         if (tool != Tool::brush) ImGui::SameLine();
@@ -81,6 +107,7 @@ void draw_tools(Session& session, Tools& tools) {
                     if (ImGui::Selectable(name.c_str(), brush.exclude == name)) brush.exclude = name;
                 ImGui::EndCombo();
             }
+        draw_map_and_distance(session, brush);
     }
     if (tools.tool == Tool::polygon) text("click corners, Enter fills, Esc drops");
     if (tools.tool == Tool::select && tools.selected()) {

@@ -76,6 +76,69 @@ TEST_F(Commands, PaintFollowsItsRules) {
               ErrorId::syntax);
 }
 
+TEST_F(Commands, PaintByAMap) {
+    ASSERT_TRUE(write_text_file(folder + "/half.pgm", "P5 2 1 255 " + std::string("\xff\x00", 2)));
+    auto session = open();
+    const std::string rule =
+        R"("scatter": {"plant": "fern", "density_per_m2": 0.5,
+           "density_map": {"picture": "half.pgm", "center": [0, 0], "size_m": [80, 400]}})";
+    auto left_share = [&] {
+        size_t left = 0;
+        for (const PlacedPlant& plant : plants(*session)) left += plant.x < 0;
+        return double(left) / double(count(*session));
+    };
+    perform(*session, "paint", ("{" + rule + R"(, "stroke": [[-40, 0], [40, 0]], "radius_m": 10})").c_str());
+    EXPECT_GT(count(*session), 250u);
+    EXPECT_NEAR(left_share(), 0.875, 0.05);  // of a slope between the two pixels' middles
+    session->undo();
+    perform(*session, "fill", ("{" + rule + R"(, "polygon": [[-40, -20], [40, -20], [40, 20], [-40, 20]]})").c_str());
+    EXPECT_NEAR(left_share(), 0.875, 0.05);
+    const size_t filled = count(*session);
+    // As a rule, and from a rule to plants.
+    std::string wide = rule;
+    wide.insert(wide.rfind('}'), R"(, "region": {"rectangle": {"center": [0, 0], "size_m": [80, 40]}})");
+    perform(*session, "add_rule", ("{" + wide + "}").c_str());
+    perform(*session, "bake_rule", R"({"index": 2})");
+    EXPECT_NEAR(double(count(*session)), 2.0 * double(filled), 0.1 * double(filled));
+    EXPECT_NEAR(left_share(), 0.875, 0.05);
+    const Error fault = refuse(*session, "add_rule",
+                               R"({"scatter": {"plant": "fern", "count": 3, "density_map": {"picture": "no.pgm"}}})");
+    EXPECT_NE(to_string(fault).find("density_map.picture"), std::string::npos) << to_string(fault);
+}
+
+TEST_F(Commands, PaintAtADistanceToOthers) {
+    auto session = open();
+    perform(*session, "place", R"({"population": "oak", "at": [0, 0]})");
+    perform(*session, "add_rule",
+            R"({"scatter": {"plant": "oak", "count": 1, "region": {"circle": {"center": [30, 0], "radius_m": 0.02}}}})");
+    perform(*session, "paint",
+            R"({"scatter": {"plant": "fern", "density_per_m2": 1, "distance": {"from": "oak", "least_m": 2, "most_m": 6}},
+                "stroke": [[-20, 0], [60, 0]], "radius_m": 10})");
+    size_t at_placed = 0, at_rule = 0;
+    for (const PlacedPlant& plant : plants(*session)) {
+        if (session->document().kinds()[plant.kind] != "fern") continue;
+        const double placed_m = glm::length(ground_place(plant)), rule_m = glm::length(ground_place(plant) - dvec2(30, 0));
+        at_placed += placed_m < 6.0;
+        at_rule += rule_m < 6.03;
+        EXPECT_GE(std::min(placed_m, rule_m + 0.03), 2.0);
+        EXPECT_LE(std::min(placed_m, rule_m), 6.03);
+    }
+    EXPECT_NEAR(double(at_placed), 100.0, 35.0);  // pi (36 - 4)
+    EXPECT_NEAR(double(at_rule), 100.0, 35.0);
+    // A rule placed one by one measures from the rules before it, and from what is placed.
+    perform(*session, "add_rule",
+            R"({"scatter": {"plant": "birch", "density_per_m2": 1, "region": {"circle": {"center": [15, 0], "radius_m": 40}},
+                            "distance": {"from": ["oak"], "most_m": 3}}})");
+    const auto& json = session->document().root().text->json;
+    perform(*session, "bake_rule", ("{\"index\": " + std::to_string(json["placements"].size() - 1) + "}").c_str());
+    EXPECT_NEAR(double(count(*session, "birch")), 2.0 * 28.3, 25.0);
+    perform(*session, "rename_population", R"({"name": "oak", "to": "quercus"})");
+    perform(*session, "add_rule",
+            R"({"scatter": {"plant": "fern", "count": 1, "distance": {"from": ["quercus"], "most_m": 9}}})");
+    perform(*session, "rename_population", R"({"name": "quercus", "to": "oak"})");
+    EXPECT_EQ(session->document().root().text->json["placements"].back()["scatter"]["distance"]["from"][0], "oak");
+}
+
 // A hand's stroke, piece by piece, is what a script paints at once.
 TEST_F(Commands, PaintsTheSameAtOnceAndInPieces) {
     auto a = open(false), b = open(false);

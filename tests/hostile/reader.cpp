@@ -22,6 +22,7 @@ const std::vector<Reader>& readers() {
         {"r16", false, read_r16, r16_seeds, nullptr},
         {"ground", false, read_ground, ground_seeds, seal_ground},
         {"ppm", false, read_ppm, ppm_seeds, nullptr},
+        {"pnm", false, read_pnm, pnm_seeds, nullptr},
         {"pfm", false, read_pfm, pfm_seeds, nullptr},
         {"png", false, read_png, png_seeds, nullptr},
     };

@@ -278,6 +278,15 @@ bool read_ppm(std::span<const std::byte> bytes) {
     return true;
 }
 
+bool read_pnm(std::span<const std::byte> bytes) {
+    const Scratch file("hostile.pnm", bytes);
+    const auto picture = coppice::read_pnm(file.path());
+    if (!accepted(picture)) return false;
+    require(picture->rgb.size() == size_t(3) * picture->width * picture->height, "pixels are there");
+    for (const float value : picture->rgb) require(value >= 0.0f && value <= 1.0f, "values are shares");
+    return true;
+}
+
 bool read_pfm(std::span<const std::byte> bytes) {
     const Scratch file("hostile.pfm", bytes);
     const auto picture = coppice::read_pfm(file.path());

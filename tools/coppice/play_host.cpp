@@ -25,10 +25,12 @@ std::string cache_dir_of(const PlayOptions& options) {
     return options.cache_dir.empty() ? default_cache_dir() : options.cache_dir;
 }
 
-SceneLoadSettings scene_load_settings(const Registry& registry, const PlayOptions& options) {
-    return {registry.find<TerrainInterface>(k_terrain_interface, k_terrain_version),
-            registry.find<ModellerInterface>(k_modeller_interface, k_modeller_version),
-            cache_dir_of(options)};
+SceneLoadSettings scene_load_settings(PlayHost& host, const PlayOptions& options) {
+    return {host.registry.find<TerrainInterface>(k_terrain_interface, k_terrain_version),
+            host.registry.find<ModellerInterface>(k_modeller_interface, k_modeller_version),
+            cache_dir_of(options),
+            {},
+            [&host] { return host.find_images(); }};
 }
 
 }  // namespace
@@ -54,7 +56,7 @@ Status PlayHost::load_scene_file(const PlayOptions& options) {
     if (is_plant_file(options.scene)) {
         scene.models = {plant_scene_model(options.scene)};
     } else {
-        COPPICE_TRY(scene, load_scene(options.scene, scene_load_settings(registry, options)));
+        COPPICE_TRY(scene, load_scene(options.scene, scene_load_settings(*this, options)));
     }
     if (!options.path.empty()) {
         COPPICE_TRY(scene.camera_path, load_camera_path(options.path, scene.terrain.get()));
@@ -126,7 +128,7 @@ Result<std::vector<Plant>> PlayHost::load_plants(const PlayOptions& options) {
         COPPICE_TRY(const Scene again,
                     is_plant_file(options.scene)
                         ? make_plant_scene(options.scene, bounds.front(), options.height, terrain)
-                        : load_scene(options.scene, scene_load_settings(registry, options)));
+                        : load_scene(options.scene, scene_load_settings(*this, options)));
         bare_terrain = again.terrain;
     }
     finish_tiles(scene, bounds);

@@ -144,7 +144,8 @@ Result<Pieces> list_pieces(const PopulateSettings& settings) {
     {
         OpenedFiles opened;
         COPPICE_TRY(pieces.scene,
-                    load_scene(settings.scene, {settings.terrain, settings.modeller, cache_dir}));
+                    load_scene(settings.scene,
+                               {settings.terrain, settings.modeller, cache_dir, {}, settings.find_images}));
         COPPICE_CHECK(list_plants(pieces));
         pieces.authored = opened.paths();
     }

@@ -29,14 +29,16 @@ class Ground {
         for (const ScatterSpecies& species : s_.species) total_weight_ += species.weight;
     }
 
-    // chance in [0, 1) thins edges and noise.
+    // chance in [0, 1) thins edges, maps and noise.
     bool admits(dvec2 p, float chance) const {
         double inside = -s_.region.distance_m(p);
         if (!(inside > 0.0)) return false;
         float density = s_.edge_m > 0.0f ? std::min(1.0f, float(inside) / s_.edge_m) : 1.0f;
+        if (s_.map && density > chance) density *= s_.map->share_at(p);
         if (s_.noisy && density > chance) density *= noise_density(p);
         if (!(density > chance)) return false;
         if (!s_.exclude.shapes.empty() && s_.exclude.contains(p)) return false;
+        if (!s_.keeps_distances(p)) return false;
         if (least_up_ > 0.0f && normal_at(p).y < least_up_) return false;
         return s_.rule.takes_height(height_at(p));
     }
@@ -234,7 +236,7 @@ Result<std::vector<Spot>> spots_by_count(const ScatterSettings& s, const Ground&
     }
     return fail(ErrorId::value_out_of_range, file, place + ".count",
                 fmt::format("{} plants do not fit into the region", s.count),
-                "a larger region, fewer exclusions, or a smaller spacing_m");
+                "a larger region, fewer exclusions, a smaller spacing_m, or a brighter density_map");
 }
 
 Result<std::vector<Spot>> spots_on_grid(const ScatterSettings& s, const Ground& ground,
@@ -263,6 +265,13 @@ Result<std::vector<Spot>> spots_on_grid(const ScatterSettings& s, const Ground& 
 }
 
 }  // namespace
+
+bool ScatterSettings::keeps_distances(dvec2 p) const {
+    for (const DistanceRule& rule : distances)
+        if ((rule.too_near && rule.too_near->contains(p)) || (rule.near_enough && !rule.near_enough->contains(p)))
+            return false;
+    return true;
+}
 
 Result<std::vector<Placement>> scatter(const ScatterSettings& s, const std::string& file,
                                        const std::string& place) {

@@ -4,6 +4,7 @@
 #include "editor/commands/commands.h"
 #include "editor/commands/target.h"
 #include "plugins/vegetation/eco/measure_population.h"
+#include "plugins/vegetation/eco/vary_color.h"
 
 namespace coppice {
 namespace {
@@ -16,6 +17,13 @@ void read_entry(JsonObject& arguments, Json& entry) {
     for (const char* key : {"variations", "individuals"})
         if (arguments.has(key)) entry[key] = arguments.whole(key, 1, k_individual_limit);
     if (arguments.has("height_m")) entry["height_m"] = arguments.number("height_m", 0.001, 1000.0);
+    if (const auto* color = arguments.find("color_variation"); color && color->is_null()) {
+        entry.erase("color_variation");
+    } else if (color) {
+        JsonObject object = arguments.object("color_variation");
+        read_color_variation(object);
+        entry["color_variation"] = Json::parse(color->dump());
+    }
     if (arguments.has("importance")) entry["importance"] = arguments.number("importance", 0.001, 1000.0);
 }
 

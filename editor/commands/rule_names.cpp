@@ -1,6 +1,8 @@
 #include "editor/commands/rule_names.h"
 
 #include <fmt/format.h>
+#include "plugins/vegetation/cook/import/read_named_places.h"
+#include "plugins/vegetation/eco/place_named.h"
 #include "plugins/vegetation/eco/read_placements_csv.h"
 
 namespace coppice {
@@ -33,7 +35,7 @@ class Standing {
     // Not the others: a scene may have rules of millions of plants.
     static bool names_kind(const nlohmann::ordered_json& placement, const std::string& kind) {
         if (!placement.is_object()) return false;
-        if (placement.contains("csv")) return true;
+        if (placement.contains("csv") || placement.contains("gltf")) return true;
         const auto scatter = placement.find("scatter");
         const auto& named = scatter != placement.end() ? *scatter : placement;
         if (!named.is_object()) return false;
@@ -55,6 +57,7 @@ class Standing {
         COPPICE_TRY(JsonDocument json, JsonDocument::parse(placement.dump(), target_.path));
         JsonObject entry(json, json.root(), place);
         if (entry.has("csv")) return read_table(entry);
+        if (entry.has("gltf")) return read_nodes(entry);
         if (entry.has("plant")) {
             const auto& at = json.root().value("at", nlohmann::json::array());
             if (!at.is_array() || at.size() < 2 || !at.front().is_number() || !at.back().is_number())
@@ -80,13 +83,26 @@ class Standing {
         const auto offset = entry.numbers("offset", 2, -2.0 * k_farthest_m, 2.0 * k_farthest_m,
                                           std::vector<double>{0.0, 0.0});
         settings.offset = {offset[0], offset[1]};
-        settings.kinds = names_.kinds;
+        settings.kinds = kinds_of(entry);
+        return read_placements_csv(Document::resolve(target_.path, entry.text("csv")), settings);
+    }
+
+    Result<std::vector<Placement>> read_nodes(JsonObject& entry) const {
+        const std::string path = Document::resolve(target_.path, entry.text("gltf"));
+        const auto offset = entry.numbers("offset", 3, -2.0 * k_farthest_m, 2.0 * k_farthest_m,
+                                          std::vector<double>{0.0, 0.0, 0.0});
+        COPPICE_TRY(const std::vector<NamedPlaces> named, read_named_places(path));
+        return place_named(named, {kinds_of(entry), dvec3(offset[0], offset[1], offset[2]), 1}, path);
+    }
+
+    std::map<std::string, PlantKind> kinds_of(JsonObject& entry) const {
+        std::map<std::string, PlantKind> kinds = names_.kinds;
         if (const nlohmann::json* species = entry.find("species"); species && species->is_object())
             for (const auto& [alias, name] : species->items())
                 if (auto kind = names_.kinds.find(name.is_string() ? name.get<std::string>() : "");
                     kind != names_.kinds.end())
-                    settings.kinds[alias] = kind->second;
-        return read_placements_csv(Document::resolve(target_.path, entry.text("csv")), settings);
+                    kinds[alias] = kind->second;
+        return kinds;
     }
 
     Document& document_;

@@ -128,6 +128,30 @@ void draw_tools(Session& session, Tools& tools) {
     }
 }
 
+float number_in(const nlohmann::ordered_json& object, const char* key, float otherwise) {
+    if (!object.is_object()) return otherwise;
+    const auto value = object.find(key);
+    return value != object.end() && value->is_number() ? value->get<float>() : otherwise;
+}
+
+// How the colours of the active population's plants differ.
+void draw_color_variation(Session& session, Tools& tools, ColorVariation& draft) {
+    bool done = false;
+    auto slider = [&](const char* name, float& value, float most, const char* format, const char* words) {
+        ImGui::SliderFloat(name, &value, 0.0f, most, format);
+        explain(words);
+        done |= ImGui::IsItemDeactivatedAfterEdit();
+    };
+    slider("brightness", draft.brightness, 0.9f, "+- %.2f", "how much brighter and darker its plants are; their mean stays");
+    slider("hue", draft.hue_deg, 45.0f, "+- %.0f deg", "how far their hue is turned, either way");
+    slider("saturation", draft.saturation, 0.7f, "+- %.2f", "how much more and less colourful they are");
+    if (!done) return;
+    nlohmann::json variation = nullptr;
+    if (draft.any())
+        variation = {{"brightness", draft.brightness}, {"hue_deg", draft.hue_deg}, {"saturation", draft.saturation}};
+    tools.perform(session, "set_population", {{"name", tools.active}, {"color_variation", variation}});
+}
+
 void draw_populations(Session& session, Tools& tools, const EditorView& view, PanelState& state) {
     count_plants(session, state);
     const auto& json = session.document().root().text->json;
@@ -181,11 +205,13 @@ void draw_populations(Session& session, Tools& tools, const EditorView& view, Pa
                      short_number(double(session.document().root().plants.size())), short_number(cost)));
     if (has_plants && plants->contains(tools.active)) {
         const auto& entry = (*plants)[tools.active];
-        if (state.importance_kind != tools.active) {
-            state.importance_kind = tools.active;
-            state.importance_draft = 1.0f;
-            if (entry.is_object() && entry.contains("importance") && entry["importance"].is_number())
-                state.importance_draft = entry["importance"].get<float>();
+        if (const std::pair now(tools.active, session.text_version()); state.drafts_of != now) {
+            state.drafts_of = now;
+            state.importance_draft = number_in(entry, "importance", 1.0f);
+            const auto color = entry.is_object() ? entry.find("color_variation") : entry.end();
+            const auto& said = color != entry.end() ? *color : entry;
+            state.color_draft = {number_in(said, "brightness", 0.0f), number_in(said, "hue_deg", 0.0f),
+                                 number_in(said, "saturation", 0.0f)};
         }
         ImGui::SliderFloat("importance", &state.importance_draft, 0.1f, 10.0f, "%.2f",
                            ImGuiSliderFlags_Logarithmic);
@@ -193,6 +219,7 @@ void draw_populations(Session& session, Tools& tools, const EditorView& view, Pa
         if (ImGui::IsItemDeactivatedAfterEdit())
             tools.perform(session, "set_population",
                           {{"name", tools.active}, {"importance", state.importance_draft}});
+        draw_color_variation(session, tools, state.color_draft);
     }
     if (ImGui::TreeNode("new population")) {
         ImGui::InputText("name", state.new_name, sizeof state.new_name);

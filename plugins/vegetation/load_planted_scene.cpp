@@ -4,6 +4,7 @@
 #include "plugins/images/images.h"
 #include "plugins/modeller/modeller.h"
 #include "plugins/vegetation/cook/cook_file.h"
+#include "plugins/vegetation/cook/import/read_named_places.h"
 #include "plugins/vegetation/eco/load_scene.h"
 #include "plugins/vegetation/eco/make_tiles.h"
 #include "plugins/vegetation/eco/plant_scene.h"
@@ -35,7 +36,7 @@ Result<PlantedScene> load_planted_scene(const std::string& path, Registry& regis
     if (alone) {
         planted.scene.models = {plant_scene_model(path)};
     } else {
-        COPPICE_TRY(planted.scene, load_scene(path, {terrain, modeller, cache, {}, find_images}));
+        COPPICE_TRY(planted.scene, load_scene(path, {terrain, modeller, cache, {}, find_images, read_named_places}));
     }
     std::vector<PlantSource> sources;
     for (const SceneModel& model : planted.scene.models)

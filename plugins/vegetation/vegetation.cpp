@@ -209,7 +209,7 @@ class VegetationSystems final : public Vegetation {
     Status show(SceneGeometry geometry, std::vector<Ground> grounds, const Light& light) {
         drop_scene();
         COPPICE_CHECK(
-            rasteriser_->set_geometry({geometry.vertices, geometry.owners, geometry.reserved_points}));
+            rasteriser_->set_geometry({geometry.vertices, geometry.owners, geometry.reserved_points, geometry.has_tints}));
         geometry.vertices = {};
         geometry.owners = {};
         geometry_ = std::move(geometry);

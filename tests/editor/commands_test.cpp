@@ -370,9 +370,26 @@ TEST_F(Commands, ExportWhatTheyImport) {
         EXPECT_EQ(after[i].x, before[i].x);
         EXPECT_EQ(after[i].z, before[i].z);
         EXPECT_EQ(after[i].kind, before[i].kind);
+        EXPECT_EQ(after[i].variation, before[i].variation);
         EXPECT_EQ(after[i].scale, before[i].scale);
         EXPECT_EQ(after[i].turn, before[i].turn);
         EXPECT_LE(std::abs(after[i].lift), 1);
+    }
+    const std::string gltf = read("out.gltf");
+    EXPECT_NE(gltf.find("EXT_mesh_gpu_instancing"), std::string::npos);
+    // The same as a .glb, and far away.
+    perform(*session, "move", R"({"by": [3000000.5, -5000000.25]})");
+    const std::vector<PlacedPlant> far = plants(*session);
+    ASSERT_TRUE(write_text_file(folder + "/far.glb", placed_as_gltf(session->document(), session->document().root(),
+                                                                    session->terrain(), true)));
+    perform(*session, "delete", "{}");
+    perform(*session, "import_gltf", R"({"gltf": "far.glb"})");
+    after = plants(*session);
+    ASSERT_EQ(after.size(), far.size());
+    for (size_t i = 0; i < after.size(); ++i) {
+        EXPECT_EQ(std::pair(after[i].x, after[i].z), std::pair(far[i].x, far[i].z));
+        EXPECT_EQ(after[i].turn, far[i].turn);
+        EXPECT_EQ(after[i].scale, far[i].scale);
     }
     perform(*session, "delete", "{}");
     // Heights set scales, so ferns, whose height is not known, need their own.
@@ -390,7 +407,8 @@ TEST_F(Commands, ExportWhatTheyImport) {
 
 TEST_F(Commands, ImportNodesOfOtherPrograms) {
     ASSERT_TRUE(
-        write_text_file(folder + "/in.gltf", R"({"asset": {"version": "2.0"}, "meshes": [{"name": "QURO"}],
+        write_text_file(folder + "/in.gltf", R"({"asset": {"version": "2.0"}, "meshes": [{"name": "QURO", "primitives": [{"attributes": {"POSITION": 0}}]}],
+        "accessors": [{"componentType": 5126, "count": 3, "type": "VEC3"}],
         "nodes": [{"name": "stand", "translation": [10, 0, 0], "rotation": [0, 0.70710678, 0, 0.70710678], "scale": [2, 2, 2], "children": [1, 2, 3]},
                   {"name": "fern.012", "translation": [5, 0, 0]}, {"mesh": 0}, {"name": "camera"}]})"));
     auto session = open();
@@ -404,7 +422,11 @@ TEST_F(Commands, ImportNodesOfOtherPrograms) {
     for (const char* broken :
          {R"({"nodes": [{"children": [0]}]})", R"({"nodes": [{"name": "oak", "rotation": [0, 0, 0, 0]}]})",
           R"({"nodes": [{"name": "oak", "translation": [1e300, 0, 0]}]})", R"({"nodes": [{"name": "tree"}]})",
-          R"({"nodes": [{"children": [1, 1]}, {"name": "oak"}]})", R"({"nodes": 3})", "[", "glTF123"}) {
+          R"({"nodes": [{"children": [1, 1]}, {"name": "oak"}]})", R"({"nodes": 3})", "[", "glTF123",
+          R"({"asset": {"version": "2.0"}, "nodes": [{"children": [0], "name": "oak"}]})",
+          R"({"asset": {"version": "2.0"}, "nodes": [{"name": "oak", "rotation": [0, 0, 0, 0]}]})",
+          R"({"asset": {"version": "2.0"}, "nodes": [{"name": "oak", "translation": [1e9, 0, 0]}]})",
+          R"({"asset": {"version": "2.0"}, "nodes": [{"name": "tree"}]})"}) {
         ASSERT_TRUE(write_text_file(folder + "/in.gltf", broken));
         refuse(*session, "import_gltf", R"({"gltf": "in.gltf"})");
     }

@@ -8,6 +8,7 @@ namespace coppice::hostile {
 const std::vector<Reader>& readers() {
     static const std::vector<Reader> k_readers{
         {"gltf", false, read_gltf, gltf_seeds, nullptr},
+        {"gltf_places", false, read_gltf_places, gltf_places_seeds, nullptr},
         {"species", true, read_species, species_seeds, nullptr},
         {"scene", true, read_scene, scene_seeds, nullptr},
         {"csv", true, read_csv, csv_seeds, nullptr},

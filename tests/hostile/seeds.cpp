@@ -104,6 +104,19 @@ std::vector<Bytes> gltf_seeds() {
 "buffers":[{"byteLength":42,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAABAAIA"}]})")};
 }
 
+std::vector<Bytes> gltf_places_seeds() {
+    TinyGltf gltf;
+    add_triangle(gltf);
+    const int16_t turns[8] = {0, 23170, 0, 23170, 0, 0, 0, 32767};
+    const int rotations = gltf.accessor(gltf.view(turns, sizeof turns), 5122, "VEC4", 2, "\"normalized\":true");
+    const int places = gltf.vectors({{1, 2, 3}, {4, 5, 6}}), scales = gltf.vectors({{1, 1, 1}, {2, 2, 2}});
+    gltf.node(R"("name":"oak.003","mesh":0,"translation":[65536,0,0],"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{"TRANSLATION":)" +
+              std::to_string(places) + ",\"ROTATION\":" + std::to_string(rotations) + ",\"SCALE\":" + std::to_string(scales) + "}}}");
+    return {gltf.glb(), as_bytes(R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
+"nodes":[{"name":"stand","scale":[2,2,2],"children":[1,2]},{"name":"oak","translation":[5,0,0],"rotation":[0,0.7071068,0,0.7071068]},
+{"name":"oak_2","matrix":[0,0,-3,0,0,3,0,0,3,0,0,0,5,6,7,1]}]})")};
+}
+
 std::vector<Bytes> species_seeds() {
     return content_files("species", {"grass.json", "daisy.json", "fern.json", "shrub.json"});
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include "plugins/modeller/modeller.h"
 #include "plugins/vegetation/cook/cook_file.h"
+#include "plugins/vegetation/cook/import/read_named_places.h"
 #include "plugins/vegetation/eco/camera_path.h"
 #include "plugins/vegetation/eco/load_scene.h"
 #include "plugins/vegetation/eco/make_tiles.h"
@@ -30,7 +31,8 @@ SceneLoadSettings scene_load_settings(PlayHost& host, const PlayOptions& options
             host.registry.find<ModellerInterface>(k_modeller_interface, k_modeller_version),
             cache_dir_of(options),
             {},
-            [&host] { return host.find_images(); }};
+            [&host] { return host.find_images(); },
+            read_named_places};
 }
 
 }  // namespace

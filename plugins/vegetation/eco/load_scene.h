@@ -4,6 +4,7 @@
 #include <string>
 #include "plugins/images/images.h"
 #include "plugins/modeller/modeller.h"
+#include "plugins/vegetation/eco/place_named.h"
 #include "plugins/vegetation/eco/scene.h"
 
 namespace coppice {
@@ -16,6 +17,8 @@ struct SceneLoadSettings {
     std::function<Result<std::string>(const std::string& path)> read_file;
     // Asked for where a density map is neither PGM nor PPM; empty: such a map is refused.
     std::function<const ImagesInterface*()> find_images;
+    // Of a glTF file; empty: a scene with such placements is refused.
+    ReadNamedPlaces read_gltf;
 };
 
 // Deterministic: same files, same scene, on any number of threads. Tiles' bounds hold only the plants' feet

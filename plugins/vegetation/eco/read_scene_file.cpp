@@ -5,6 +5,7 @@
 #include "plugins/vegetation/eco/camera_path.h"
 #include "plugins/vegetation/eco/ground_height.h"
 #include "plugins/vegetation/eco/measure_population.h"
+#include "plugins/vegetation/eco/place_named.h"
 #include "plugins/vegetation/eco/placed_plants.h"
 #include "plugins/vegetation/eco/quantise.h"
 #include "plugins/vegetation/eco/read_light.h"
@@ -23,8 +24,8 @@ namespace {
 
 constexpr float k_radians = k_pi / 180.0f;
 
-constexpr const char* k_placement_kinds[] = {"plant", "csv", "scatter", "packed"};
-enum : size_t { k_single, k_csv, k_scatter, k_packed };
+constexpr const char* k_placement_kinds[] = {"plant", "csv", "scatter", "packed", "gltf"};
+enum : size_t { k_single, k_csv, k_scatter, k_packed, k_gltf };
 
 struct Population {
     std::string name;
@@ -110,6 +111,11 @@ class SceneReader {
                 entry.whole("individuals", variations, k_individual_limit, variations);
             kind.height_m = entry.real("height_m", 0.001f, 1000.0f, 0.0f);
             float importance = entry.real("importance", 0.001f, 1000.0f, 1.0f);
+            ColorVariation color;
+            if (entry.has("color_variation")) {
+                JsonObject object = entry.object("color_variation");
+                color = read_color_variation(object);
+            }
             entry.close();
             if (individuals > 1 && !source.ends_with(".json"))
                 entry.report(ErrorId::value_out_of_range, variations > 1 ? "variations" : "individuals",
@@ -120,7 +126,7 @@ class SceneReader {
             if (!document_.sound()) return;
             kind.individuals.clear();
             for (uint32_t v = 0; v < variations; ++v) {
-                scene_.models.push_back({name, resolve(source), v, importance});
+                scene_.models.push_back({name, resolve(source), v, importance, color});
                 kind.individuals.push_back({first_model + v, 1.0f});
             }
             if (individuals > variations)
@@ -203,12 +209,14 @@ class SceneReader {
     }
 
     static size_t placement_kind(JsonObject& entry) {
-        return entry.one_of({k_placement_kinds[0], k_placement_kinds[1], k_placement_kinds[2], k_placement_kinds[3]});
+        return entry.one_of({k_placement_kinds[0], k_placement_kinds[1], k_placement_kinds[2], k_placement_kinds[3],
+                             k_placement_kinds[4]});
     }
 
     Result<std::vector<Placement>> read_fixed(JsonObject& entry, size_t kind) {
         if (kind == k_single) return read_single(entry);
         if (kind == k_csv) return read_csv(entry);
+        if (kind == k_gltf) return read_gltf(entry);
         return read_packed(entry);
     }
 
@@ -268,18 +276,39 @@ class SceneReader {
         settings.offset = dvec2(offset[0], offset[1]);
         read_scale_range(entry, settings.scale_low, settings.scale_high);
         settings.seed = entry.whole("seed", 0, UINT64_MAX, 1);
-        settings.kinds = names_.kinds;
+        settings.kinds = read_species(entry);
         settings.terrain = scene_.terrain.get();
-        if (const nlohmann::json* species = entry.find("species")) {
-            JsonObject map = entry.object("species");  // {"name in the file": "plant"}
-            COPPICE_CHECK(document_.status());
-            for (const auto& [alias, ignored] : species->items())
-                if (const PlantKind* kind = names_.find_kind(map, alias.c_str(), map.text(alias.c_str())))
-                    settings.kinds[alias] = *kind;
-        }
         entry.close();
         COPPICE_CHECK(document_.status());
         return read_placements_csv(resolve(name), settings);
+    }
+
+    // {"name in the file": "plant"}, beside the plants' own names.
+    std::map<std::string, PlantKind> read_species(JsonObject& entry) {
+        std::map<std::string, PlantKind> kinds = names_.kinds;
+        const nlohmann::json* species = entry.find("species");
+        if (!species) return kinds;
+        JsonObject map = entry.object("species");
+        if (!document_.sound()) return kinds;
+        for (const auto& [alias, ignored] : species->items())
+            if (const PlantKind* kind = names_.find_kind(map, alias.c_str(), map.text(alias.c_str())))
+                kinds[alias] = *kind;
+        return kinds;
+    }
+
+    Result<std::vector<Placement>> read_gltf(JsonObject& entry) {
+        const std::string path = resolve(entry.text("gltf"));
+        const auto offset = entry.numbers("offset", 3, -2.0 * k_farthest_m, 2.0 * k_farthest_m,
+                                          std::vector<double>{0.0, 0.0, 0.0});
+        PlaceNamedSettings settings{read_species(entry), dvec3(offset[0], offset[1], offset[2]),
+                                    entry.whole("seed", 0, UINT64_MAX, 1)};
+        entry.close();
+        COPPICE_CHECK(document_.status());
+        if (!settings_.read_gltf)
+            return fail(ErrorId::format_unknown, scene_.path, entry.place_of("gltf"), "glTF files are not read here",
+                        "place these plants by a table or one by one");
+        COPPICE_TRY(const std::vector<NamedPlaces> named, settings_.read_gltf(path));
+        return place_named(named, settings, path);
     }
 
     // On the ground, wherever that has come to lie since they were placed.

@@ -36,6 +36,9 @@ Result<Edit> make_paint(const CommandContext& context, JsonObject& arguments) {
     const BrushRule rule = read_brush_rule(arguments, names, target.terrain, &under_brush);
     if (arguments.document().sound() && !(rule.scatter.density_per_m2 > 0.0))
         arguments.report(ErrorId::syntax, "scatter", "a brush needs a density", "write density_per_m2");
+    if (rule.scatter.competition.crown_radius_m > 0.0)
+        arguments.report(ErrorId::syntax, "scatter", "what a brush paints cannot compete while it is painted",
+                         "leave compete out, and run the command compete afterwards; or fill a polygon");
     const std::vector<dvec2> points = read_stroke(arguments);
     const double radius_m = arguments.number("radius_m", 0.01, k_radius_limit_m);
     arguments.close();

@@ -152,17 +152,19 @@ void draw_color_variation(Session& session, Tools& tools, ColorVariation& draft)
     tools.perform(session, "set_population", {{"name", tools.active}, {"color_variation", variation}});
 }
 
-void draw_populations(Session& session, Tools& tools, const EditorView& view, PanelState& state) {
+void draw_populations(Session& session, Tools& tools, const EditorView& view, const ViewFigures& figures,
+                      PanelState& state) {
     count_plants(session, state);
     const auto& json = session.document().root().text->json;
     const auto plants = json.find("plants");
     const bool has_plants = plants != json.end() && plants->is_object();
     double cost = 0.0;
-    if (ImGui::BeginTable("populations", 4, ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp)) {
+    if (ImGui::BeginTable("populations", 5, ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp)) {
         ImGui::TableSetupColumn("population", 0, 2.2f);
         ImGui::TableSetupColumn("placed", 0, 1.0f);
         ImGui::TableSetupColumn("by rule", 0, 1.0f);
         ImGui::TableSetupColumn("triangles", 0, 1.2f);
+        ImGui::TableSetupColumn("view", 0, 0.8f);
         ImGui::TableHeadersRow();
         auto row = [&](const std::string& name, bool missing) {
             ImGui::PushID(name.c_str());
@@ -193,6 +195,10 @@ void draw_populations(Session& session, Tools& tools, const EditorView& view, Pa
             text(short_number(by_rule));
             ImGui::TableNextColumn();
             text(short_number(triangles));
+            ImGui::TableNextColumn();
+            const auto share = figures.shares.find(name);
+            text(fmt::format("{:.0f} %", share == figures.shares.end() ? 0.0 : 100.0 * share->second));
+            explain("of the vertices that this view draws");
             ImGui::PopID();
         };
         if (has_plants)
@@ -203,6 +209,8 @@ void draw_populations(Session& session, Tools& tools, const EditorView& view, Pa
     }
     text(fmt::format("{} plants placed, {} triangles in all",
                      short_number(double(session.document().root().plants.size())), short_number(cost)));
+    if (figures.cloud_share > 0.005)
+        text(fmt::format("{:.0f} % of the view is the distance, where points stand for all", 100.0 * figures.cloud_share));
     if (has_plants && plants->contains(tools.active)) {
         const auto& entry = (*plants)[tools.active];
         if (const std::pair now(tools.active, session.text_version()); state.drafts_of != now) {
@@ -478,7 +486,7 @@ void draw_panels(Session& session, Tools& tools, const EditorView& view, const V
     ImGui::PushItemWidth(side_px * 0.55f);
     draw_tools(session, tools);
     ImGui::Separator();
-    draw_populations(session, tools, view, state);
+    draw_populations(session, tools, view, figures, state);
     if (ImGui::CollapsingHeader("rules")) draw_rules(session, tools);
     ImGui::PopItemWidth();
     ImGui::End();

@@ -29,6 +29,9 @@ struct ViewFigures {
     double frame_ms = 0.0;
     float sample_distance_px = 0.0f;
     uint64_t vertices = 0;
+    // Of the vertices that the view draws, by population; and of clouds, which stand for all plants in the distance.
+    std::map<std::string, double> shares;
+    double cloud_share = 0.0;
     std::optional<dvec3> cursor;
 };
 

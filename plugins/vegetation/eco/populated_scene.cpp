@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr uint64_t k_format = 2;
+constexpr uint64_t k_format = 3;
 constexpr const char* k_remedy = "populate the scene again";
 constexpr uint64_t k_most_count = uint64_t(1) << 53;  // what JSON numbers hold
 

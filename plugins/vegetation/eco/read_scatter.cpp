@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include "plugins/shared/noise.h"
+#include "plugins/vegetation/eco/compete.h"
 #include "runtime/core/hash.h"
 
 namespace coppice {
@@ -247,6 +248,15 @@ ScatterSettings read_scatter(JsonObject& object, const SceneNames& names, const 
     if (object.has("density_noise")) read_noise(object.object("density_noise"), s);
     if (object.has("density_map")) read_map(object.object("density_map"), names, s);
     if (object.has("distance")) read_distances(object, names, s);
+    if (object.has("compete")) {
+        JsonObject compete = object.object("compete");
+        s.competition.crown_radius_m = compete.number("crown_radius_m", 0.001, 1000.0);
+        s.competition.steps = uint32_t(compete.whole("steps", 0, k_competition_step_limit, 10));
+        s.competition.growth = compete.number("growth", 0.0, 1.0, 0.1);
+        s.competition.scale_most =
+            compete.number("scale_most", double(k_scale_least), double(k_scale_most), 1.0);
+        compete.close();
+    }
     // Two scatters written alike must not put their plants on the same spots.
     s.seed = object.whole("seed", 0, UINT64_MAX, hash_text(object.place_of("seed")));
     object.close();

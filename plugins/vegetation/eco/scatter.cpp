@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include "plugins/shared/noise.h"
+#include "plugins/vegetation/eco/compete.h"
 #include "plugins/vegetation/eco/ground_height.h"
 #include "runtime/core/jobs.h"
 #include "runtime/core/random.h"
@@ -264,6 +265,26 @@ Result<std::vector<Spot>> spots_on_grid(const ScatterSettings& s, const Ground& 
     return spots;
 }
 
+// In the order they stood in.
+std::vector<Placement> grow_up(const std::vector<Placement>& plants, const Competition& rule) {
+    std::vector<Competitor> competitors;
+    competitors.reserve(plants.size());
+    for (const Placement& plant : plants)
+        competitors.push_back({dvec2(plant.position_world.x, plant.position_world.z),
+                               rule.crown_radius_m * double(plant.scale),
+                               rule.crown_radius_m * std::max(double(plant.scale), rule.scale_most),
+                               uint32_t(competitors.size())});
+    std::vector<Competitor> left = compete(std::move(competitors), rule.steps, rule.growth);
+    std::sort(left.begin(), left.end(), [](const auto& a, const auto& b) { return a.plant < b.plant; });
+    std::vector<Placement> grown;
+    grown.reserve(left.size());
+    for (const Competitor& each : left) {
+        grown.push_back(plants[each.plant]);
+        grown.back().scale = float(each.radius_m / rule.crown_radius_m);
+    }
+    return grown;
+}
+
 }  // namespace
 
 bool ScatterSettings::keeps_distances(dvec2 p) const {
@@ -289,7 +310,7 @@ Result<std::vector<Placement>> scatter(const ScatterSettings& s, const std::stri
     parallel_for(spots.size(), 4096, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; ++i) plants[i] = ground.plant_at(spots[i]);
     });
-    return plants;
+    return s.competition.crown_radius_m > 0.0 ? grow_up(plants, s.competition) : plants;
 }
 
 }  // namespace coppice

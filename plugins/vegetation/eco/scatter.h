@@ -36,6 +36,14 @@ struct DistanceRule {
     std::shared_ptr<const NearPlaces> too_near, near_enough;
 };
 
+// What was scattered grows and thins itself (compete.h).
+struct Competition {
+    double crown_radius_m = 0.0;  // at scale 1; 0: none
+    uint32_t steps = 0;
+    double growth = 0.0;      // share a step
+    double scale_most = 1.0;  // nothing grows beyond it
+};
+
 struct ScatterSettings {
     std::vector<ScatterSpecies> species;  // at least one
     Region region;                        // at least one shape
@@ -58,6 +66,7 @@ struct ScatterSettings {
     DensityNoise noise;
     std::optional<DensityMap> map;
     std::vector<DistanceRule> distances;  // all of them hold
+    Competition competition;              // density and count are what it begins with
     uint64_t seed = 1;
     const Terrain* terrain = nullptr;  // null: the plane y = 0
 

@@ -50,7 +50,11 @@ Status run(const Options& options) {
         view.validation = options.window.validation;
         return bench_editing(registry, terrain, options.scene, view);
     }
-    COPPICE_TRY(const std::unique_ptr<Session> session, Session::open(options.scene, {terrain}));
+    COPPICE_TRY(const std::unique_ptr<Session> session, Session::open(options.scene, {terrain, true, [&registry]() -> const ImagesInterface* {
+                                       if (!registry.load("images")) return nullptr;
+                                       return registry.find<ImagesInterface>(k_images_interface,
+                                                                             k_images_version);
+                                   }}));
     if (options.script.empty()) {
         COPPICE_CHECK(registry.load("editor_window"));
         const auto* window =

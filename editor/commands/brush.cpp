@@ -66,6 +66,7 @@ Result<std::vector<PlacedPlant>> PaintStroke::extend(dvec2 to, const PlantSet& t
         const PlacedPlant placed = placed_from(plant);
         const dvec2 at = ground_place(placed);
         if (!rule_.within.shapes.empty() && !rule_.within.contains(at)) continue;
+        if (!settings.keeps_distances(at)) continue;  // once more: its place was rounded
         if (settings.spacing_m > 0.0 &&
             (!is_free(there, at, settings.spacing_m) || !is_free(added_, at, settings.spacing_m)))
             continue;
@@ -84,6 +85,7 @@ Result<std::vector<PlacedPlant>> fill_region(const BrushRule& rule, const PlantS
         const PlacedPlant placed = placed_from(plant);
         const dvec2 at = ground_place(placed);
         if (!rule.within.shapes.empty() && !rule.within.contains(at)) continue;
+        if (!rule.scatter.keeps_distances(at)) continue;
         if (rule.scatter.spacing_m > 0.0 && !is_free(there, at, rule.scatter.spacing_m)) continue;
         plants.push_back(placed);
     }

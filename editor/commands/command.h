@@ -6,12 +6,14 @@
 #include "editor/document/document.h"
 #include "plugins/shared/json_object.h"
 #include "plugins/terrain/terrain.h"
+#include "plugins/vegetation/eco/density_map.h"
 
 namespace coppice {
 
 struct CommandContext {
     Document& document;                // gets names of kinds, and files that are referred to, but no edits
     const Terrain* terrain = nullptr;  // of the root; other files lie on a plane
+    MapPictures* pictures = nullptr;   // null: rules have no density maps
 };
 
 // Faults of the arguments go to their document; the caller asks for its status first. Errors: also those of files that are

@@ -1,18 +1,17 @@
 #include "editor/commands/exchange.h"
 
-#include <filesystem>
+#include <map>
+#include <tuple>
 #include <fmt/format.h>
 #include "editor/commands/commands.h"
 #include "editor/commands/target.h"
+#include "plugins/vegetation/cook/import/read_named_places.h"
 #include "plugins/vegetation/eco/ground_height.h"
+#include "plugins/vegetation/eco/place_named.h"
 #include "plugins/vegetation/eco/read_placements_csv.h"
-#include "runtime/core/file.h"
 
 namespace coppice {
 namespace {
-
-constexpr size_t k_gltf_limit_bytes = size_t(1) << 31;
-constexpr size_t k_depth_limit = 256;
 
 // {"name in the file": "population"}, beside the populations' own names.
 std::map<std::string, PlantKind> read_species(JsonObject& arguments, const SceneNames& names) {
@@ -40,167 +39,79 @@ float turn_deg_of(PlantTurn turn) {
     return deg < 0.0f ? deg + 360.0f : deg;
 }
 
-// Where a node stands in the world, with the scales and turns of all above it.
-struct NodeFrame {
-    dvec3 origin{0.0};
-    float x = 0.0f, y = 0.0f, z = 0.0f, w = 1.0f;
-    double scale = 1.0;
-
-    dvec3 turned(dvec3 p) const {
-        const dvec3 axis(x, y, z);
-        const dvec3 t = 2.0 * glm::cross(axis, p);
-        return p + double(w) * t + glm::cross(axis, t);
+// RFC 4648, for buffers inside a text.
+std::string as_base64(std::string_view bytes) {
+    constexpr char k_digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    text.reserve((bytes.size() + 2) / 3 * 4);
+    for (size_t i = 0; i < bytes.size(); i += 3) {
+        uint32_t three = 0;
+        for (size_t k = 0; k < 3; ++k) three = three << 8 | (i + k < bytes.size() ? uint8_t(bytes[i + k]) : 0u);
+        for (size_t k = 0; k < 4; ++k) text += i + k > bytes.size() ? '=' : k_digits[three >> (18 - 6 * k) & 63u];
     }
-};
+    return text;
+}
 
-class GltfReader {
+using Json = nlohmann::ordered_json;
+
+// A glTF file with one buffer, its accessors one behind the other.
+class GltfWriter {
   public:
-    GltfReader(const nlohmann::json& root, const std::string& path,
-               const std::map<std::string, PlantKind>& kinds, const Terrain* terrain)
-        : root_(root), path_(path), kinds_(kinds), terrain_(terrain) {}
-
-    Result<std::vector<PlacedPlant>> read() {
-        const auto nodes = root_.find("nodes");
-        if (nodes == root_.end() || !nodes->is_array())
-            return wrong("nodes", "missing", "a glTF 2.0 file with nodes");
-        nodes_ = &*nodes;
-        std::vector<bool> is_child(nodes_->size(), false);
-        for (const auto& node : *nodes_)
-            for (uint64_t child : children_of(node))
-                if (child < is_child.size()) is_child[child] = true;
-        for (size_t n = 0; n < nodes_->size(); ++n)
-            if (!is_child[n]) COPPICE_CHECK(visit(n, {}, 0));
-        if (plants_.empty()) {
-            std::vector<std::string> known;
-            for (const auto& [name, kind] : kinds_) known.push_back(name);
-            return wrong("nodes", fmt::format("none of {} nodes is called like a population", nodes_->size()),
-                         "name them in \"species\": " + known_names("", known));
-        }
-        return std::move(plants_);
+    // Whole numbers of elements; gives the accessor.
+    template <class Value>
+    size_t add(const std::vector<Value>& values, const char* type, size_t components, uint32_t component_type,
+               bool normalized = false) {
+        const size_t size_bytes = values.size() * sizeof(Value);
+        views_.push_back({{"buffer", 0}, {"byteOffset", buffer_.size()}, {"byteLength", size_bytes}});
+        buffer_.append(reinterpret_cast<const char*>(values.data()), size_bytes);
+        buffer_.resize((buffer_.size() + 3) & ~size_t(3), '\0');
+        Json accessor = {{"bufferView", views_.size() - 1},
+                         {"componentType", component_type},
+                         {"count", values.size() / components},
+                         {"type", type}};
+        if (normalized) accessor["normalized"] = true;
+        accessors.push_back(std::move(accessor));
+        return accessors.size() - 1;
     }
+
+    std::string write(Json gltf, bool binary) const {
+        if (!buffer_.empty()) {
+            Json buffer = {{"byteLength", buffer_.size()}};
+            if (!binary) buffer["uri"] = "data:application/octet-stream;base64," + as_base64(buffer_);
+            gltf["buffers"] = {std::move(buffer)};
+            gltf["bufferViews"] = views_;
+            gltf["accessors"] = accessors;
+        }
+        if (!binary) return gltf.dump(1) + "\n";
+        std::string json = gltf.dump();
+        json.resize((json.size() + 3) & ~size_t(3), ' ');
+        std::string file = "glTF";
+        auto number = [&file](size_t value) {
+            for (int shift = 0; shift < 32; shift += 8) file += char(value >> shift & 255u);
+        };
+        number(2);
+        number(12 + 8 + json.size() + (buffer_.empty() ? 0 : 8 + buffer_.size()));
+        number(json.size());
+        file += "JSON" + json;
+        if (buffer_.empty()) return file;
+        number(buffer_.size());
+        return file + std::string("BIN\0", 4) + buffer_;
+    }
+
+    Json accessors = Json::array();
 
   private:
-    tl::unexpected<Error> wrong(std::string place, std::string fault, std::string remedy) const {
-        return fail(ErrorId::value_out_of_range, path_, std::move(place), std::move(fault),
-                    std::move(remedy));
-    }
-
-    static std::vector<uint64_t> children_of(const nlohmann::json& node) {
-        std::vector<uint64_t> children;
-        if (!node.is_object()) return children;
-        const auto list = node.find("children");
-        if (list == node.end() || !list->is_array()) return children;
-        for (const auto& child : *list)
-            if (child.is_number_unsigned()) children.push_back(child.get<uint64_t>());
-        return children;
-    }
-
-    // As many finite numbers, or the others.
-    Result<std::vector<double>> numbers(const nlohmann::json& node, const char* key,
-                                        std::vector<double> otherwise, const std::string& place) const {
-        const auto list = node.find(key);
-        if (list == node.end()) return otherwise;
-        std::vector<double> values;
-        if (list->is_array())
-            for (const auto& value : *list)
-                if (value.is_number()) values.push_back(value.get<double>());
-        bool good = values.size() == otherwise.size();
-        for (double value : values) good = good && std::abs(value) <= k_farthest_m;
-        if (!good)
-            return wrong(place + "." + key, "found " + shown(*list),
-                         fmt::format("{} numbers within 1e7", otherwise.size()));
-        return values;
-    }
-
-    // The node's or its mesh's name, up to a number that exporters put behind: "birch.003", "birch_12".
-    const PlantKind* kind_of(const nlohmann::json& node) const {
-        std::vector<std::string> names;
-        if (node.contains("name") && node["name"].is_string())
-            names.push_back(node["name"].get<std::string>());
-        if (node.contains("mesh") && node["mesh"].is_number_unsigned()) {
-            const auto meshes = root_.find("meshes");
-            const uint64_t mesh = node["mesh"].get<uint64_t>();
-            if (meshes != root_.end() && meshes->is_array() && mesh < meshes->size() &&
-                (*meshes)[mesh].is_object())
-                if (auto name = (*meshes)[mesh].find("name");
-                    name != (*meshes)[mesh].end() && name->is_string())
-                    names.push_back(name->get<std::string>());
-        }
-        for (std::string name : names) {
-            if (auto found = kinds_.find(name); found != kinds_.end()) return &found->second;
-            const size_t end = name.find_last_not_of("0123456789");
-            if (end == name.npos || end + 1 == name.size() || (name[end] != '.' && name[end] != '_'))
-                continue;
-            name.resize(end);
-            if (auto found = kinds_.find(name); found != kinds_.end()) return &found->second;
-        }
-        return nullptr;
-    }
-
-    Status visit(size_t n, const NodeFrame& parent, size_t depth) {
-        const std::string place = fmt::format("nodes[{}]", n);
-        if (n >= nodes_->size() || depth > k_depth_limit || ++visited_ > nodes_->size())
-            return wrong(place, "nodes that do not form a tree", "children that exist, each of one parent");
-        const nlohmann::json& node = (*nodes_)[n];
-        if (!node.is_object()) return wrong(place, "found " + shown(node), "an object");
-        if (node.contains("matrix"))
-            return wrong(place + ".matrix", "a matrix", "translation, rotation and scale apart");
-        COPPICE_TRY(const auto move, numbers(node, "translation", {0, 0, 0}, place));
-        COPPICE_TRY(const auto turn, numbers(node, "rotation", {0, 0, 0, 1}, place));
-        COPPICE_TRY(const auto scale, numbers(node, "scale", {1, 1, 1}, place));
-        NodeFrame frame;
-        frame.origin = parent.origin + parent.turned(dvec3(move[0], move[1], move[2])) * parent.scale;
-        // Plants have one scale: what stretches them keeps their volume.
-        frame.scale = parent.scale * std::cbrt(std::abs(scale[0] * scale[1] * scale[2]));
-        const double length =
-            std::sqrt(turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2] + turn[3] * turn[3]);
-        if (!(length > 1e-6)) return wrong(place + ".rotation", "no rotation", "a unit quaternion");
-        const float bx = float(turn[0] / length), by = float(turn[1] / length), bz = float(turn[2] / length),
-                    bw = float(turn[3] / length);
-        const NodeFrame& a = parent;
-        frame.x = a.w * bx + a.x * bw + a.y * bz - a.z * by;
-        frame.y = a.w * by - a.x * bz + a.y * bw + a.z * bx;
-        frame.z = a.w * bz + a.x * by - a.y * bx + a.z * bw;
-        frame.w = a.w * bw - a.x * bx - a.y * by - a.z * bz;
-        const std::vector<uint64_t> children = children_of(node);
-        const PlantKind* kind = children.empty() ? kind_of(node) : nullptr;
-        if (kind) {
-            if (!(frame.scale >= double(k_scale_least) && frame.scale <= double(k_scale_most)))
-                return wrong(place + ".scale", fmt::format("{:.3g}", frame.scale), "from 0.001 to 1000");
-            if (!(std::abs(frame.origin.x) <= k_farthest_m && std::abs(frame.origin.z) <= k_farthest_m))
-                return wrong(place, "too far away", "within 1e7 m");
-            const double lift_m = frame.origin.y - ground_height(terrain_, frame.origin.x, frame.origin.z);
-            const uint32_t number = kind->individuals.front().model >> 16;
-            const uint32_t variation = uint32_t(plants_.size() % kind->individuals.size());
-            plants_.push_back(pack_placed({frame.origin.x, lift_m, frame.origin.z}, float(frame.scale),
-                                          pack_turn(frame.x, frame.y, frame.z, frame.w), uint16_t(number),
-                                          uint16_t(variation)));
-        }
-        for (uint64_t child : children) COPPICE_CHECK(visit(child, frame, depth + 1));
-        return {};
-    }
-
-    const nlohmann::json& root_;
-    const std::string& path_;
-    const std::map<std::string, PlantKind>& kinds_;
-    const Terrain* terrain_;
-    const nlohmann::json* nodes_ = nullptr;
-    size_t visited_ = 0;
-    std::vector<PlacedPlant> plants_;
+    std::string buffer_;
+    Json views_ = Json::array();
 };
 
-// Of a .gltf as it is, of a .glb its first chunk.
-Result<std::string> read_gltf_json(const std::string& path) {
-    COPPICE_TRY(std::string bytes, read_text_file(path, k_gltf_limit_bytes));
-    if (!bytes.starts_with("glTF")) return bytes;
-    auto number_at = [&](size_t at) {
-        uint32_t value = 0;
-        for (size_t i = 0; i < 4; ++i) value |= uint32_t(uint8_t(bytes[at + i])) << (8 * i);
-        return value;
-    };
-    if (bytes.size() < 20 || number_at(16) != 0x4e4f534a || number_at(12) > bytes.size() - 20)
-        return fail(ErrorId::file_truncated, path, "byte 12", "its JSON is not whole", "a .glb of glTF 2.0");
-    return bytes.substr(20, number_at(12));
+// A metre high, for programs that have no plants of ours to put there.
+size_t add_pyramid(GltfWriter& writer, Json& attributes) {
+    const std::vector<float> corners{-0.2f, 0, -0.2f, 0.2f, 0, -0.2f, 0.2f, 0, 0.2f, -0.2f, 0, 0.2f, 0, 1, 0};
+    attributes["POSITION"] = writer.add(corners, "VEC3", 3, 5126);
+    writer.accessors.back()["min"] = {-0.2f, 0, -0.2f};
+    writer.accessors.back()["max"] = {0.2f, 1, 0.2f};
+    return writer.add(std::vector<uint16_t>{0, 4, 1, 1, 4, 2, 2, 4, 3, 3, 4, 0, 0, 1, 2, 0, 2, 3}, "SCALAR", 1, 5123);
 }
 
 }  // namespace
@@ -237,9 +148,13 @@ Result<Edit> make_import_gltf(const CommandContext& context, JsonObject& argumen
     const std::map<std::string, PlantKind> kinds = read_species(arguments, names);
     arguments.close();
     if (!arguments.document().sound()) return Edit{};
-    COPPICE_TRY(const std::string text, read_gltf_json(path));
-    COPPICE_TRY(const JsonDocument json, JsonDocument::parse(text, path));
-    COPPICE_TRY(std::vector<PlacedPlant> added, GltfReader(json.root(), path, kinds, target.terrain).read());
+    COPPICE_TRY(const std::vector<NamedPlaces> named, read_named_places(path));
+    COPPICE_TRY(const std::vector<Placement> placements, place_named(named, {kinds, dvec3(0.0), 1}, path));
+    std::vector<PlacedPlant> added;
+    for (const Placement& plant : placements) {
+        const dvec3& at = plant.position_world;
+        added.push_back(placed_from(plant, at.y - ground_height(target.terrain, at.x, at.z)));
+    }
     Edit edit = edit_of(target, {}, std::move(added));
     edit.name = "import " + count_text(context.document, edit.files[0].added);
     return edit;
@@ -268,37 +183,54 @@ std::string placed_as_csv(const Document& document, const EcoFile& file) {
     return text;
 }
 
-std::string placed_as_gltf(const Document& document, const EcoFile& file, const Terrain* terrain) {
-    using Json = nlohmann::ordered_json;
-    std::map<std::string, std::vector<PlacedPlant>> of_kind;
+std::string placed_as_gltf(const Document& document, const EcoFile& file, const Terrain* terrain, bool binary) {
+    // A node for each block of ground, so that places are exact as floats beside its corner.
+    constexpr double k_block_m = 65536.0;
+    using Place = std::tuple<std::string, uint16_t, int64_t, int64_t>;  // name, individual, block
+    std::map<Place, std::vector<PlacedPlant>> groups;
     for (const auto& [cell, plants] : file.plants.cells())
-        for (const PlacedPlant& plant : plants) of_kind[document.kinds()[plant.kind]].push_back(plant);
-    Json nodes = Json::array(), roots = Json::array();
-    for (const auto& [name, plants] : of_kind) {
-        Json group = {{"name", name + " (all)"}, {"children", Json::array()}};
+        for (const PlacedPlant& plant : plants) {
+            const dvec2 block = glm::floor(ground_place(plant) / k_block_m);
+            groups[{document.kinds()[plant.kind], plant.variation, int64_t(block.x), int64_t(block.y)}].push_back(plant);
+        }
+    GltfWriter writer;
+    Json gltf = {{"asset", {{"version", "2.0"}, {"generator", "coppice-editor"}}}};
+    if (groups.empty()) return writer.write(std::move(gltf), binary);
+    Json attributes, nodes = Json::array(), roots = Json::array(), meshes = Json::array();
+    const size_t indices = add_pyramid(writer, attributes);
+    std::map<std::string, size_t> mesh_of;
+    for (const auto& [place, plants] : groups) {
+        const auto& [name, variation, column, row] = place;
+        if (mesh_of.try_emplace(name, meshes.size()).second)
+            meshes.push_back({{"name", name}, {"primitives", {{{"attributes", attributes}, {"indices", indices}}}}});
+        const dvec2 corner = dvec2(double(column), double(row)) * k_block_m;
+        std::vector<float> translations, scales;
+        std::vector<int16_t> rotations;
         for (const PlacedPlant& plant : plants) {
             const dvec2 at = ground_place(plant);
             const double y = ground_height(terrain, at.x, at.y) + plant.lift / k_lift_steps_per_m;
+            for (double along : {at.x - corner.x, y, at.y - corner.y}) translations.push_back(float(along));
             const PlantTurn turn = unpack_placed_turn(plant.turn);
-            const float scale = unpack_scale(plant.scale);
-            group["children"].push_back(nodes.size());
-            nodes.push_back(
-                {{"name", name},
-                 {"translation", {at.x, y, at.y}},
-                 {"rotation",
-                  {turn.x * k_turn_step, turn.y * k_turn_step, turn.z * k_turn_step, turn.w * k_turn_step}},
-                 {"scale", {scale, scale, scale}}});
+            rotations.insert(rotations.end(), {turn.x, turn.y, turn.z, turn.w});
+            scales.insert(scales.end(), 3, unpack_scale(plant.scale));
         }
         roots.push_back(nodes.size());
-        nodes.push_back(std::move(group));
+        nodes.push_back({{"name", fmt::format("{}.{:03}", name, variation)},
+                         {"mesh", mesh_of[name]},
+                         {"translation", {corner.x, 0, corner.y}},
+                         {"extensions",
+                          {{"EXT_mesh_gpu_instancing",
+                            {{"attributes",
+                              {{"TRANSLATION", writer.add(translations, "VEC3", 3, 5126)},
+                               {"ROTATION", writer.add(rotations, "VEC4", 4, 5122, true)},
+                               {"SCALE", writer.add(scales, "VEC3", 3, 5126)}}}}}}}});
     }
-    Json gltf = {{"asset", {{"version", "2.0"}, {"generator", "coppice-editor"}}}};
-    if (!nodes.empty()) {
-        gltf["scene"] = 0;
-        gltf["scenes"] = {{{"nodes", std::move(roots)}}};
-        gltf["nodes"] = std::move(nodes);
-    }
-    return gltf.dump(1) + "\n";
+    gltf["extensionsUsed"] = gltf["extensionsRequired"] = {"EXT_mesh_gpu_instancing"};
+    gltf["scene"] = 0;
+    gltf["scenes"] = {{{"nodes", std::move(roots)}}};
+    gltf["nodes"] = std::move(nodes);
+    gltf["meshes"] = std::move(meshes);
+    return writer.write(std::move(gltf), binary);
 }
 
 }  // namespace coppice

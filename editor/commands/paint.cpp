@@ -1,6 +1,7 @@
 // Brushes and polygons: paint, erase, fill.
 #include "editor/commands/brush.h"
 #include "editor/commands/commands.h"
+#include "editor/commands/rule_names.h"
 
 namespace coppice {
 namespace {
@@ -30,11 +31,14 @@ std::vector<dvec2> read_stroke(JsonObject& arguments) {
 Result<Edit> make_paint(const CommandContext& context, JsonObject& arguments) {
     const Target target = read_target(context, arguments);
     if (!target.file) return Edit{};
-    COPPICE_TRY(const SceneNames names, names_of(context.document, *target.file, target.path));
+    COPPICE_TRY(const SceneNames names, rule_names_of(context, target));
     const Region under_brush{{RegionShape{}}};
     const BrushRule rule = read_brush_rule(arguments, names, target.terrain, &under_brush);
     if (arguments.document().sound() && !(rule.scatter.density_per_m2 > 0.0))
         arguments.report(ErrorId::syntax, "scatter", "a brush needs a density", "write density_per_m2");
+    if (rule.scatter.competition.crown_radius_m > 0.0)
+        arguments.report(ErrorId::syntax, "scatter", "what a brush paints cannot compete while it is painted",
+                         "leave compete out, and run the command compete afterwards; or fill a polygon");
     const std::vector<dvec2> points = read_stroke(arguments);
     const double radius_m = arguments.number("radius_m", 0.01, k_radius_limit_m);
     arguments.close();
@@ -72,7 +76,7 @@ Result<Edit> make_erase(const CommandContext& context, JsonObject& arguments) {
 Result<Edit> make_fill(const CommandContext& context, JsonObject& arguments) {
     const Target target = read_target(context, arguments);
     if (!target.file) return Edit{};
-    COPPICE_TRY(const SceneNames names, names_of(context.document, *target.file, target.path));
+    COPPICE_TRY(const SceneNames names, rule_names_of(context, target));
     const nlohmann::json* polygon = arguments.find("polygon");
     Region where;
     if (polygon)

@@ -4,6 +4,7 @@
 #include "editor/commands/commands.h"
 #include "editor/commands/target.h"
 #include "plugins/vegetation/eco/measure_population.h"
+#include "plugins/vegetation/eco/vary_color.h"
 
 namespace coppice {
 namespace {
@@ -16,6 +17,13 @@ void read_entry(JsonObject& arguments, Json& entry) {
     for (const char* key : {"variations", "individuals"})
         if (arguments.has(key)) entry[key] = arguments.whole(key, 1, k_individual_limit);
     if (arguments.has("height_m")) entry["height_m"] = arguments.number("height_m", 0.001, 1000.0);
+    if (const auto* color = arguments.find("color_variation"); color && color->is_null()) {
+        entry.erase("color_variation");
+    } else if (color) {
+        JsonObject object = arguments.object("color_variation");
+        read_color_variation(object);
+        entry["color_variation"] = Json::parse(color->dump());
+    }
     if (arguments.has("importance")) entry["importance"] = arguments.number("importance", 0.001, 1000.0);
 }
 
@@ -40,6 +48,19 @@ bool is_free_name(JsonObject& arguments, const Json& json, const char* key, cons
     return false;
 }
 
+// "from" of one rule of distance, or of a list of them.
+template <class Visit>
+void visit_distance(Json& distance, Visit&& visit) {
+    if (distance.is_array())
+        for (Json& each : distance) visit_distance(each, visit);
+    if (!distance.is_object() || !distance.contains("from")) return;
+    Json& from = distance["from"];
+    if (from.is_string()) visit(from);
+    if (from.is_array())
+        for (Json& name : from)
+            if (name.is_string()) visit(name);
+}
+
 // Where placements name plants: calls visit(object, key) for each.
 template <class Visit>
 void each_use(Json& json, Visit&& visit) {
@@ -55,6 +76,8 @@ void each_use(Json& json, Visit&& visit) {
             look(*scatter);
             if (auto shares = scatter->find("plants"); shares != scatter->end() && shares->is_object())
                 visit(*shares);
+            if (auto distance = scatter->find("distance"); distance != scatter->end())
+                visit_distance(*distance, visit);
         }
         if (auto species = placement.find("species"); species != placement.end() && species->is_object())
             for (auto& [alias, name] : species->items())

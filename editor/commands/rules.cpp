@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include "editor/commands/brush.h"
 #include "editor/commands/commands.h"
+#include "editor/commands/rule_names.h"
 
 namespace coppice {
 namespace {
@@ -26,7 +27,8 @@ size_t read_index(JsonObject& arguments, const Json& placements) {
 }
 
 // Checked as the scene's reader will.
-void check_rule(JsonObject& arguments, const SceneNames& names, const Terrain* terrain) {
+void check_rule(JsonObject& arguments, SceneNames names, const Terrain* terrain) {
+    names.places_of = nullptr;
     JsonObject rule = arguments.object("scatter");
     if (arguments.document().sound()) read_scatter(rule, names, terrain);
 }
@@ -38,7 +40,7 @@ Json ordered(const nlohmann::json& value) { return Json::parse(value.dump()); }
 Result<Edit> make_add_rule(const CommandContext& context, JsonObject& arguments) {
     const Target target = read_target(context, arguments);
     if (!target.file) return Edit{};
-    COPPICE_TRY(const SceneNames names, names_of(context.document, *target.file, target.path));
+    COPPICE_TRY(const SceneNames names, rule_names_of(context, target));
     check_rule(arguments, names, target.terrain);
     arguments.close();
     if (!arguments.document().sound()) return Edit{};
@@ -52,7 +54,7 @@ Result<Edit> make_add_rule(const CommandContext& context, JsonObject& arguments)
 Result<Edit> make_set_rule(const CommandContext& context, JsonObject& arguments) {
     const Target target = read_target(context, arguments);
     if (!target.file) return Edit{};
-    COPPICE_TRY(const SceneNames names, names_of(context.document, *target.file, target.path));
+    COPPICE_TRY(const SceneNames names, rule_names_of(context, target));
     Json json = target.file->text->json;
     const size_t index = read_index(arguments, placements_of(json));
     check_rule(arguments, names, target.terrain);
@@ -81,11 +83,11 @@ Result<Edit> make_remove_rule(const CommandContext& context, JsonObject& argumen
 Result<Edit> make_bake_rule(const CommandContext& context, JsonObject& arguments) {
     const Target target = read_target(context, arguments);
     if (!target.file) return Edit{};
-    COPPICE_TRY(const SceneNames names, names_of(context.document, *target.file, target.path));
     Json json = target.file->text->json;
     const size_t index = read_index(arguments, placements_of(json));
     arguments.close();
     if (!arguments.document().sound()) return Edit{};
+    COPPICE_TRY(const SceneNames names, rule_names_of(context, target, index));
     // Read where it stands, so that a rule without a seed has its own.
     COPPICE_TRY(JsonDocument rules, JsonDocument::parse(json.dump(), target.path));
     const std::string place = fmt::format("placements[{}].scatter", index);

@@ -28,7 +28,7 @@ Status export_plants(JsonObject& arguments, bool csv, Session& session) {
     COPPICE_CHECK(arguments.document().status());
     return write_text_file(Document::resolve(target.path, name),
                            csv ? placed_as_csv(session.document(), *target.file)
-                               : placed_as_gltf(session.document(), *target.file, target.terrain));
+                               : placed_as_gltf(session.document(), *target.file, target.terrain, name.ends_with(".glb")));
 }
 
 // So many chosen plants; without "least" and "most": exactly "count".

@@ -44,6 +44,7 @@ Result<std::unique_ptr<Session>> Session::open(const std::string& path, const Se
     std::unique_ptr<Session> session(new Session(std::move(document)));
     session->settings_ = settings;
     session->path_ = path;
+    session->pictures_ = MapPictures(settings.find_images);
     session->warnings_ = session->document_.faults();
     const std::string journal = journal_path(session->document_.root_path());
     std::error_code ignored;

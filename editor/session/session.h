@@ -16,6 +16,7 @@ class Session {
     struct Settings {
         const TerrainInterface* terrain = nullptr;  // null: the ground is the plane y = 0
         bool journal = true;
+        MapPictures::Find find_images = {};  // for maps of density that are neither PGM nor PPM
     };
     // A path without a file starts a scene there; a plant is opened by itself. Errors: Document::open's; write_failed where another editor has it open.
     static Result<std::unique_ptr<Session>> open(const std::string& path, const Settings& settings);
@@ -53,7 +54,7 @@ class Session {
     const History& history() const { return history_; }
     const Terrain* terrain() const { return terrain_.get(); }
     const std::shared_ptr<Terrain>& shared_terrain() const { return terrain_; }
-    CommandContext context() { return {document_, terrain_.get()}; }
+    CommandContext context() { return {document_, terrain_.get(), &pictures_}; }
     // For who draws: PlantSet::take_changed.
     Document& changing_document() { return document_; }
     // What lately went wrong without stopping work: a journal that cannot be written, a terrain that cannot be read.
@@ -73,6 +74,7 @@ class Session {
     Settings settings_;
     std::string path_;
     Document document_;
+    MapPictures pictures_;
     History history_;
     Edit open_edit_;
     Journal journal_;

@@ -6,6 +6,7 @@
 #include <set>
 #include <fmt/format.h>
 #include "plugins/vegetation/cook/cook_file.h"
+#include "plugins/vegetation/cook/import/read_named_places.h"
 #include "plugins/vegetation/cook/part_settings.h"
 #include "plugins/vegetation/eco/load_scene.h"
 #include "plugins/vegetation/eco/make_tiles.h"
@@ -166,7 +167,7 @@ Result<Plant> find_or_make_box(const std::string& cache_dir) {
 Result<Scene> load_what_can_be(Texts& texts, const std::string& path, const BaseSceneSettings& settings,
                                std::vector<Error>& faults) {
     SceneLoadSettings load{settings.terrain, settings.modeller, settings.cache_dir,
-                           [&](const std::string& file) { return texts.read(file); }};
+                           [&](const std::string& file) { return texts.read(file); }, settings.find_images, read_named_places};
     while (true) {
         Result<Scene> scene = load_scene(path, load);
         if (scene || faults.size() >= k_fault_limit) return scene;

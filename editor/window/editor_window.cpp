@@ -474,9 +474,28 @@ class EditorWindow {
         const FrameReport& report = view_->vegetation->report();
         figures_.sample_distance_px = report.sample_distance_px;
         figures_.vertices = report.vertices;
+        update_shares();
         if (const std::string plant = std::exchange(state_.wants_plant, {}); !plant.empty())
             if (Status opened = open_plant(plant); !opened) state_.note = to_string(opened.error());
         return {};
+    }
+
+    // What each population costs, now and then: it takes as long as a frame's levels of detail.
+    void update_shares() {
+        constexpr double k_every_ms = 500.0;
+        if (now_ms() - shares_ms_ < k_every_ms) return;
+        const FrameExplanation drawn = view_->vegetation->explain_frame();
+        shares_ms_ = now_ms();
+        std::map<std::string, double> vertices;
+        double far = 0.0, all = 0.0;
+        for (const ExplainedPlants& plants : drawn.plants) vertices[plants.model] += double(vertices_of(plants.drawn));
+        for (const ExplainedCloud& cloud : drawn.clouds) far += double(vertices_of(cloud.drawn));
+        all = far;
+        for (const auto& [name, count] : vertices) all += count;
+        if (!(all > 0.0)) all = 1.0;
+        for (auto& [name, count] : vertices) count /= all;
+        figures_.shares = std::move(vertices);
+        figures_.cloud_share = far / all;
     }
 
     void show_title() {
@@ -502,6 +521,7 @@ class EditorWindow {
     Tools tools_;
     PanelState state_;
     ViewFigures figures_;
+    double shares_ms_ = -1e9;  // when they were updated
     Camera camera_;
     FrameSettings settings_of_frame_;
     std::vector<KeyPress> presses_;

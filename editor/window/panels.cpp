@@ -43,6 +43,32 @@ void count_plants(const Session& session, PanelState& state) {
         state.counts[session.document().kinds()[kind]] = counts[kind];
 }
 
+void draw_map_and_distance(const Session& session, BrushSettings& brush) {
+    ImGui::InputText("map", brush.map, sizeof brush.map);
+    explain("a picture, as seen from the scene's folder: plants stand where it is bright");
+    if (brush.map[0]) {
+        ImGui::DragFloat("map side", &brush.map_side_m, 1.0f, 0.0f, 1e6f, "%.0f m");
+        explain("of a square about the origin; 0: all the ground");
+        ImGui::SameLine();
+        ImGui::Checkbox("dark", &brush.map_inverted);
+        explain("plants stand where the picture is dark");
+    }
+    const auto& json = session.document().root().text->json;
+    const auto plants = json.find("plants");
+    if (plants == json.end() || !plants->is_object()) return;
+    if (ImGui::BeginCombo("distance to", brush.distance_from.empty() ? "-" : brush.distance_from.c_str())) {
+        if (ImGui::Selectable("-", brush.distance_from.empty())) brush.distance_from.clear();
+        for (const auto& [name, entry] : plants->items())
+            if (ImGui::Selectable(name.c_str(), brush.distance_from == name)) brush.distance_from = name;
+        ImGui::EndCombo();
+    }
+    explain("of that population's plants that stand already");
+    if (brush.distance_from.empty()) return;
+    ImGui::DragFloat("at least", &brush.distance_least_m, 0.1f, 0.0f, 1000.0f, "%.1f m");
+    ImGui::DragFloat("at most", &brush.distance_most_m, 0.1f, 0.0f, 1000.0f, "%.1f m");
+    explain("0: any distance");
+}
+
 void draw_tools(Session& session, Tools& tools) {
     for (const Tool tool : {Tool::brush, Tool::polygon, Tool::place, Tool::select}) {
         if (tool != Tool::brush) ImGui::SameLine();
@@ -81,6 +107,7 @@ void draw_tools(Session& session, Tools& tools) {
                     if (ImGui::Selectable(name.c_str(), brush.exclude == name)) brush.exclude = name;
                 ImGui::EndCombo();
             }
+        draw_map_and_distance(session, brush);
     }
     if (tools.tool == Tool::polygon) text("click corners, Enter fills, Esc drops");
     if (tools.tool == Tool::select && tools.selected()) {
@@ -101,17 +128,43 @@ void draw_tools(Session& session, Tools& tools) {
     }
 }
 
-void draw_populations(Session& session, Tools& tools, const EditorView& view, PanelState& state) {
+float number_in(const nlohmann::ordered_json& object, const char* key, float otherwise) {
+    if (!object.is_object()) return otherwise;
+    const auto value = object.find(key);
+    return value != object.end() && value->is_number() ? value->get<float>() : otherwise;
+}
+
+// How the colours of the active population's plants differ.
+void draw_color_variation(Session& session, Tools& tools, ColorVariation& draft) {
+    bool done = false;
+    auto slider = [&](const char* name, float& value, float most, const char* format, const char* words) {
+        ImGui::SliderFloat(name, &value, 0.0f, most, format);
+        explain(words);
+        done |= ImGui::IsItemDeactivatedAfterEdit();
+    };
+    slider("brightness", draft.brightness, 0.9f, "+- %.2f", "how much brighter and darker its plants are; their mean stays");
+    slider("hue", draft.hue_deg, 45.0f, "+- %.0f deg", "how far their hue is turned, either way");
+    slider("saturation", draft.saturation, 0.7f, "+- %.2f", "how much more and less colourful they are");
+    if (!done) return;
+    nlohmann::json variation = nullptr;
+    if (draft.any())
+        variation = {{"brightness", draft.brightness}, {"hue_deg", draft.hue_deg}, {"saturation", draft.saturation}};
+    tools.perform(session, "set_population", {{"name", tools.active}, {"color_variation", variation}});
+}
+
+void draw_populations(Session& session, Tools& tools, const EditorView& view, const ViewFigures& figures,
+                      PanelState& state) {
     count_plants(session, state);
     const auto& json = session.document().root().text->json;
     const auto plants = json.find("plants");
     const bool has_plants = plants != json.end() && plants->is_object();
     double cost = 0.0;
-    if (ImGui::BeginTable("populations", 4, ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp)) {
+    if (ImGui::BeginTable("populations", 5, ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp)) {
         ImGui::TableSetupColumn("population", 0, 2.2f);
         ImGui::TableSetupColumn("placed", 0, 1.0f);
         ImGui::TableSetupColumn("by rule", 0, 1.0f);
         ImGui::TableSetupColumn("triangles", 0, 1.2f);
+        ImGui::TableSetupColumn("view", 0, 0.8f);
         ImGui::TableHeadersRow();
         auto row = [&](const std::string& name, bool missing) {
             ImGui::PushID(name.c_str());
@@ -142,6 +195,10 @@ void draw_populations(Session& session, Tools& tools, const EditorView& view, Pa
             text(short_number(by_rule));
             ImGui::TableNextColumn();
             text(short_number(triangles));
+            ImGui::TableNextColumn();
+            const auto share = figures.shares.find(name);
+            text(fmt::format("{:.0f} %", share == figures.shares.end() ? 0.0 : 100.0 * share->second));
+            explain("of the vertices that this view draws");
             ImGui::PopID();
         };
         if (has_plants)
@@ -152,13 +209,17 @@ void draw_populations(Session& session, Tools& tools, const EditorView& view, Pa
     }
     text(fmt::format("{} plants placed, {} triangles in all",
                      short_number(double(session.document().root().plants.size())), short_number(cost)));
+    if (figures.cloud_share > 0.005)
+        text(fmt::format("{:.0f} % of the view is the distance, where points stand for all", 100.0 * figures.cloud_share));
     if (has_plants && plants->contains(tools.active)) {
         const auto& entry = (*plants)[tools.active];
-        if (state.importance_kind != tools.active) {
-            state.importance_kind = tools.active;
-            state.importance_draft = 1.0f;
-            if (entry.is_object() && entry.contains("importance") && entry["importance"].is_number())
-                state.importance_draft = entry["importance"].get<float>();
+        if (const std::pair now(tools.active, session.text_version()); state.drafts_of != now) {
+            state.drafts_of = now;
+            state.importance_draft = number_in(entry, "importance", 1.0f);
+            const auto color = entry.is_object() ? entry.find("color_variation") : entry.end();
+            const auto& said = color != entry.end() ? *color : entry;
+            state.color_draft = {number_in(said, "brightness", 0.0f), number_in(said, "hue_deg", 0.0f),
+                                 number_in(said, "saturation", 0.0f)};
         }
         ImGui::SliderFloat("importance", &state.importance_draft, 0.1f, 10.0f, "%.2f",
                            ImGuiSliderFlags_Logarithmic);
@@ -166,6 +227,7 @@ void draw_populations(Session& session, Tools& tools, const EditorView& view, Pa
         if (ImGui::IsItemDeactivatedAfterEdit())
             tools.perform(session, "set_population",
                           {{"name", tools.active}, {"importance", state.importance_draft}});
+        draw_color_variation(session, tools, state.color_draft);
         if (ImGui::Button("levels of detail ...")) state.wants_plant = tools.active;
         explain("the plant beside what stands for it; kind and importance by part");
     }
@@ -426,7 +488,7 @@ void draw_panels(Session& session, Tools& tools, const EditorView& view, const V
     ImGui::PushItemWidth(side_px * 0.55f);
     draw_tools(session, tools);
     ImGui::Separator();
-    draw_populations(session, tools, view, state);
+    draw_populations(session, tools, view, figures, state);
     if (ImGui::CollapsingHeader("rules")) draw_rules(session, tools);
     ImGui::PopItemWidth();
     ImGui::End();

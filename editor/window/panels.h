@@ -1,5 +1,6 @@
 // What stands beside the view: tools, populations with what they cost, rules, tiles, what was done, what is wrong.
 #pragma once
+#include "plugins/vegetation/eco/vary_color.h"
 #include "editor/view/editor_view.h"
 #include "editor/window/tools.h"
 
@@ -22,7 +23,8 @@ struct PanelState {
     std::vector<Error> warnings;
     char new_name[64] = "", new_source[256] = "", new_tile[128] = "";
     float importance_draft = 0.0f;
-    std::string importance_kind;
+    ColorVariation color_draft;
+    std::pair<std::string, uint64_t> drafts_of;  // the population, the text's version
     std::map<std::string, size_t> counts;               // of placed plants
     std::pair<size_t, size_t> counted_at{SIZE_MAX, 0};  // plants, steps
 };
@@ -31,6 +33,9 @@ struct ViewFigures {
     double frame_ms = 0.0;
     float sample_distance_px = 0.0f;
     uint64_t vertices = 0;
+    // Of the vertices that the view draws, by population; and of clouds, which stand for all plants in the distance.
+    std::map<std::string, double> shares;
+    double cloud_share = 0.0;
     std::optional<dvec3> cursor;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include "editor/commands/rule_names.h"
 #include "runtime/core/hash.h"
 
 namespace coppice {
@@ -52,6 +53,20 @@ nlohmann::json Tools::rule() const {
     if (brush.limit_altitude)
         rule["altitude_m"] = {brush.altitude_low_m, std::max(brush.altitude_low_m, brush.altitude_high_m)};
     if (!brush.exclude.empty()) rule["exclude"] = brush.exclude;
+    if (brush.map[0]) {
+        nlohmann::json& map = rule["density_map"] = {{"picture", brush.map}};
+        if (brush.map_side_m > 0.0f) {
+            map["center"] = {0, 0};
+            map["size_m"] = {brush.map_side_m, brush.map_side_m};
+        }
+        if (brush.map_inverted) map["black"] = 1, map["white"] = 0;
+    }
+    if (!brush.distance_from.empty() && (brush.distance_least_m > 0.0f || brush.distance_most_m > 0.0f)) {
+        nlohmann::json& distance = rule["distance"] = {{"from", brush.distance_from}};
+        if (brush.distance_least_m > 0.0f) distance["least_m"] = brush.distance_least_m;
+        if (brush.distance_most_m > 0.0f)
+            distance["most_m"] = std::max(brush.distance_least_m, brush.distance_most_m);
+    }
     return rule;
 }
 
@@ -104,8 +119,8 @@ void Tools::begin_stroke(Session& session, const Gesture& gesture) {
         }
     } else {
         const CommandContext context = session.context();
-        const EcoFile& root = session.document().root();
-        auto names = names_of(context.document, root, context.document.root_path());
+        EcoFile& root = context.document.root();
+        auto names = rule_names_of(context, {context.document.root_path(), &root, session.terrain()});
         auto text = JsonDocument::parse(nlohmann::json{{"scatter", rule()}}.dump(), "");
         if (names && text) {
             JsonObject arguments(*text, text->root(), "");

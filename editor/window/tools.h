@@ -19,6 +19,11 @@ struct BrushSettings {
     bool limit_slope = false, limit_altitude = false;
     float slope_max_deg = 35.0f, altitude_low_m = 0.0f, altitude_high_m = 100.0f;
     std::string exclude;          // a region of the scene
+    char map[256] = "";           // a picture, as seen from the scene's folder
+    float map_side_m = 0.0f;      // of a square about the origin; 0: all the terrain
+    bool map_inverted = false;
+    std::string distance_from;  // a population
+    float distance_least_m = 0.0f, distance_most_m = 0.0f;  // 0: any
     std::set<std::string> kinds;  // that are painted, in equal shares
 };
 

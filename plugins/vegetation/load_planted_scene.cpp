@@ -4,6 +4,7 @@
 #include "plugins/images/images.h"
 #include "plugins/modeller/modeller.h"
 #include "plugins/vegetation/cook/cook_file.h"
+#include "plugins/vegetation/cook/import/read_named_places.h"
 #include "plugins/vegetation/eco/load_scene.h"
 #include "plugins/vegetation/eco/make_tiles.h"
 #include "plugins/vegetation/eco/plant_scene.h"
@@ -26,23 +27,25 @@ Result<PlantedScene> load_planted_scene(const std::string& path, Registry& regis
     const std::string cache = cache_dir.empty() ? default_cache_dir() : cache_dir;
     const bool alone = is_plant_file(path);
 
+    // Only textures and maps need pictures, and whoever has none need not have the plugin.
+    const auto find_images = [&registry]() -> const ImagesInterface* {
+        if (!registry.load("images")) return nullptr;
+        return registry.find<ImagesInterface>(k_images_interface, k_images_version);
+    };
     PlantedScene planted;
     if (alone) {
         planted.scene.models = {plant_scene_model(path)};
     } else {
-        COPPICE_TRY(planted.scene, load_scene(path, {terrain, modeller, cache}));
+        COPPICE_TRY(planted.scene, load_scene(path, {terrain, modeller, cache, {}, find_images, read_named_places}));
     }
     std::vector<PlantSource> sources;
     for (const SceneModel& model : planted.scene.models)
         sources.push_back({model.source_path, model.variation});
-    // Only textures need pictures, and whoever has none need not have the plugin.
     const bool textured = std::ranges::any_of(sources, [](const PlantSource& source) {
         return !source.path.ends_with(".json") && !source.path.ends_with(".plant");
     });
-    const ImagesInterface* images = nullptr;
-    if (textured && registry.load("images"))
-        images = registry.find<ImagesInterface>(k_images_interface, k_images_version);
-    COPPICE_TRY(planted.plants, find_or_cook(cache, sources, CookSettings{}, modeller, images));
+    COPPICE_TRY(planted.plants, find_or_cook(cache, sources, CookSettings{}, modeller,
+                                             textured ? find_images() : nullptr));
 
     std::vector<Box> bounds;
     for (const Plant& plant : planted.plants) bounds.push_back(plant.bounds_plant);

@@ -217,7 +217,7 @@ class VegetationSystems final : public Vegetation {
     // In place of what was shown before, which stays on an error.
     Status show(SceneGeometry geometry, Rows rows, std::vector<Ground> grounds, const Light& light) {
         if (auto uploaded =
-                rasteriser_->set_geometry({geometry.vertices, geometry.owners, geometry.reserved_points});
+                rasteriser_->set_geometry({geometry.vertices, geometry.owners, geometry.reserved_points, geometry.has_tints});
             !uploaded) {
             drop_rows(rows);
             return uploaded;

@@ -31,16 +31,17 @@ class HeaderReader {
             text += char(bytes_[at_++]);
         return text;
     }
-    // In [1, k_picture_side_limit], or 0.
-    uint32_t side() {
+    // In [1, most], or 0.
+    uint32_t number(uint32_t most) {
         uint64_t value = 0;
         for (char c : word()) {
             if (c < '0' || c > '9') return 0;
             value = value * 10 + uint64_t(c - '0');
-            if (value > k_picture_side_limit) return 0;
+            if (value > most) return 0;
         }
         return uint32_t(value);
     }
+    uint32_t side() { return number(k_picture_side_limit); }
     std::span<const std::byte> rest() {  // one white-space character ends the header
         return at_ < bytes_.size() ? bytes_.subspan(at_ + 1) : std::span<const std::byte>();
     }
@@ -106,6 +107,41 @@ Result<Picture> read_ppm(const std::string& path) {
     for (size_t i = 0; i < pixels; ++i) {
         for (size_t c = 0; c < 3; ++c) picture.rgba[i * 4 + c] = uint8_t(rest[i * 3 + c]);
         picture.rgba[i * 4 + 3] = 255;
+    }
+    return picture;
+}
+
+Result<FloatPicture> read_pnm(const std::string& path) {
+    COPPICE_TRY(MappedFile file, MappedFile::open(path));
+    HeaderReader header(file.bytes());
+    const std::string magic = header.word();
+    if (magic != "P5" && magic != "P6")
+        return fail(ErrorId::format_unknown, path, "byte 0", "not a picture we read", "expected P5 or P6");
+    FloatPicture picture;
+    picture.width = header.side();
+    picture.height = header.side();
+    const uint32_t largest = header.number(65535);
+    if (picture.width == 0 || picture.height == 0 || largest == 0)
+        return fail(ErrorId::value_out_of_range, path, "header", "bad width, height or largest value",
+                    "sides from 1 to 16384 and a largest value from 1 to 65535");
+    const std::span<const std::byte> rest = header.rest();
+    const size_t channels = magic == "P5" ? 1 : 3, value_bytes = largest > 255 ? 2 : 1;
+    const size_t count = size_t(picture.width) * picture.height * channels;
+    if (rest.size() < count * value_bytes)
+        return fail(ErrorId::file_truncated, path, "", "the picture ends early",
+                    "expected " + std::to_string(count * value_bytes) + " bytes of pixels");
+    auto value_at = [&](size_t i) {
+        return value_bytes == 1 ? uint32_t(rest[i])
+                                : uint32_t(rest[2 * i]) << 8 | uint32_t(rest[2 * i + 1]);  // big-endian
+    };
+    picture.rgb.resize(size_t(picture.width) * picture.height * 3);
+    for (size_t i = 0; i < picture.rgb.size(); ++i) {
+        const uint32_t value = value_at(channels == 1 ? i / 3 : i);
+        if (value > largest)
+            return fail(ErrorId::value_out_of_range, path, "pixel " + std::to_string(i / 3),
+                        "value " + std::to_string(value),
+                        "at most " + std::to_string(largest) + ", as the header says");
+        picture.rgb[i] = float(value) / float(largest);
     }
     return picture;
 }

@@ -1,4 +1,4 @@
-// A picture in memory, and the two formats that need no library: PPM (8 bit sRGB) and PFM (linear float).
+// A picture in memory, and the formats that need no library: PPM (8 bit sRGB), PFM (linear float), and PGM to read.
 // The images plugin reads and writes the others where it is installed.
 #pragma once
 #include <cstdint>
@@ -28,6 +28,10 @@ Status write_ppm(const std::string& path, const Picture& picture);
 Result<Picture> read_ppm(const std::string& path);
 // Not empty, all values there, of one size; else value_out_of_range.
 Status check_same_size(const FloatPicture& a, const FloatPicture& b);
+
+// PGM and PPM (P5, P6), 8 or 16 bit, as shares of the largest value, as stored; of a PGM all three channels are alike.
+// Errors: format_unknown, value_out_of_range, file_truncated.
+Result<FloatPicture> read_pnm(const std::string& path);
 
 Status write_pfm(const std::string& path, const FloatPicture& picture);
 Result<FloatPicture> read_pfm(const std::string& path);

@@ -99,6 +99,24 @@ FrameSettings coarse(float sample_distance_px) {
     return settings;
 }
 
+// What a scene says of a population multiplies what its parts say.
+TEST_F(ExpandCells, ImportanceOfThePopulationCounts) {
+    PlantDescription crown;
+    crown.name = "crown";
+    crown.parts = {shapes::leaf_cloud(2000, 6.0f, 0.1f, 3, k_center)};
+    crown.parts[0].importance = 1.5f;
+    auto bytes = cook_plant(crown, {});
+    ASSERT_TRUE(bytes) << to_string(bytes.error());
+    auto plant = load_plant_from_memory(std::make_shared<const std::vector<std::byte>>(std::move(*bytes)), "crown");
+    ASSERT_TRUE(plant) << to_string(plant.error());
+    Scene scene;
+    scene.models.resize(1);
+    scene.models[0].importance = 2.0f;
+    const auto geometry = gather_geometry(scene, {&*plant, 1});
+    ASSERT_TRUE(geometry);
+    for (const PackedPart& part : geometry->parts) EXPECT_EQ(part.importance, 3.0f);
+}
+
 TEST_F(ExpandCells, NearOnesDrawMoreForTheirAreaThanFarOnes) {
     const auto [nearest, farthest] = nearest_and_farthest();
     EXPECT_GT(points_a_m2(nearest, 8.0f, coarse(12.0f)), 3.0 * points_a_m2(farthest, 8.0f, coarse(12.0f)));

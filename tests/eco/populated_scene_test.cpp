@@ -47,6 +47,7 @@ class PopulatedScenes : public testing::Test {
 };
 
 TEST_F(PopulatedScenes, GiveBackWhatWasWrittenToTheLastBit) {
+    populated_.scene.models[1].color_variation = {0.1f, 7.0f, 1.0f / 3.0f};
     const std::string text = write_populated_scene(populated_);
     auto loaded = load(text);
     ASSERT_TRUE(loaded) << to_string(loaded.error());
@@ -54,6 +55,8 @@ TEST_F(PopulatedScenes, GiveBackWhatWasWrittenToTheLastBit) {
     ASSERT_EQ(loaded->scene.models.size(), 2u);
     EXPECT_EQ(loaded->scene.models[0].source_path, folder_.path_of("plants/oak.plant"));
     EXPECT_EQ(loaded->scene.models[1].importance, 1.5f);
+    EXPECT_EQ(loaded->scene.models[0].color_variation, ColorVariation{});
+    EXPECT_EQ(loaded->scene.models[1].color_variation, populated_.scene.models[1].color_variation);
     EXPECT_EQ(loaded->model_content_hashes, populated_.model_content_hashes);
     EXPECT_EQ(loaded->packs[0].triangle_count, 1234567890123u);
     EXPECT_EQ(loaded->scene.light, populated_.scene.light);

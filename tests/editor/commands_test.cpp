@@ -76,6 +76,69 @@ TEST_F(Commands, PaintFollowsItsRules) {
               ErrorId::syntax);
 }
 
+TEST_F(Commands, PaintByAMap) {
+    ASSERT_TRUE(write_text_file(folder + "/half.pgm", "P5 2 1 255 " + std::string("\xff\x00", 2)));
+    auto session = open();
+    const std::string rule =
+        R"("scatter": {"plant": "fern", "density_per_m2": 0.5,
+           "density_map": {"picture": "half.pgm", "center": [0, 0], "size_m": [80, 400]}})";
+    auto left_share = [&] {
+        size_t left = 0;
+        for (const PlacedPlant& plant : plants(*session)) left += plant.x < 0;
+        return double(left) / double(count(*session));
+    };
+    perform(*session, "paint", ("{" + rule + R"(, "stroke": [[-40, 0], [40, 0]], "radius_m": 10})").c_str());
+    EXPECT_GT(count(*session), 250u);
+    EXPECT_NEAR(left_share(), 0.875, 0.05);  // of a slope between the two pixels' middles
+    session->undo();
+    perform(*session, "fill", ("{" + rule + R"(, "polygon": [[-40, -20], [40, -20], [40, 20], [-40, 20]]})").c_str());
+    EXPECT_NEAR(left_share(), 0.875, 0.05);
+    const size_t filled = count(*session);
+    // As a rule, and from a rule to plants.
+    std::string wide = rule;
+    wide.insert(wide.rfind('}'), R"(, "region": {"rectangle": {"center": [0, 0], "size_m": [80, 40]}})");
+    perform(*session, "add_rule", ("{" + wide + "}").c_str());
+    perform(*session, "bake_rule", R"({"index": 2})");
+    EXPECT_NEAR(double(count(*session)), 2.0 * double(filled), 0.1 * double(filled));
+    EXPECT_NEAR(left_share(), 0.875, 0.05);
+    const Error fault = refuse(*session, "add_rule",
+                               R"({"scatter": {"plant": "fern", "count": 3, "density_map": {"picture": "no.pgm"}}})");
+    EXPECT_NE(to_string(fault).find("density_map.picture"), std::string::npos) << to_string(fault);
+}
+
+TEST_F(Commands, PaintAtADistanceToOthers) {
+    auto session = open();
+    perform(*session, "place", R"({"population": "oak", "at": [0, 0]})");
+    perform(*session, "add_rule",
+            R"({"scatter": {"plant": "oak", "count": 1, "region": {"circle": {"center": [30, 0], "radius_m": 0.02}}}})");
+    perform(*session, "paint",
+            R"({"scatter": {"plant": "fern", "density_per_m2": 1, "distance": {"from": "oak", "least_m": 2, "most_m": 6}},
+                "stroke": [[-20, 0], [60, 0]], "radius_m": 10})");
+    size_t at_placed = 0, at_rule = 0;
+    for (const PlacedPlant& plant : plants(*session)) {
+        if (session->document().kinds()[plant.kind] != "fern") continue;
+        const double placed_m = glm::length(ground_place(plant)), rule_m = glm::length(ground_place(plant) - dvec2(30, 0));
+        at_placed += placed_m < 6.0;
+        at_rule += rule_m < 6.03;
+        EXPECT_GE(std::min(placed_m, rule_m + 0.03), 2.0);
+        EXPECT_LE(std::min(placed_m, rule_m), 6.03);
+    }
+    EXPECT_NEAR(double(at_placed), 100.0, 35.0);  // pi (36 - 4)
+    EXPECT_NEAR(double(at_rule), 100.0, 35.0);
+    // A rule placed one by one measures from the rules before it, and from what is placed.
+    perform(*session, "add_rule",
+            R"({"scatter": {"plant": "birch", "density_per_m2": 1, "region": {"circle": {"center": [15, 0], "radius_m": 40}},
+                            "distance": {"from": ["oak"], "most_m": 3}}})");
+    const auto& json = session->document().root().text->json;
+    perform(*session, "bake_rule", ("{\"index\": " + std::to_string(json["placements"].size() - 1) + "}").c_str());
+    EXPECT_NEAR(double(count(*session, "birch")), 2.0 * 28.3, 25.0);
+    perform(*session, "rename_population", R"({"name": "oak", "to": "quercus"})");
+    perform(*session, "add_rule",
+            R"({"scatter": {"plant": "fern", "count": 1, "distance": {"from": ["quercus"], "most_m": 9}}})");
+    perform(*session, "rename_population", R"({"name": "quercus", "to": "oak"})");
+    EXPECT_EQ(session->document().root().text->json["placements"].back()["scatter"]["distance"]["from"][0], "oak");
+}
+
 // A hand's stroke, piece by piece, is what a script paints at once.
 TEST_F(Commands, PaintsTheSameAtOnceAndInPieces) {
     auto a = open(false), b = open(false);
@@ -307,9 +370,26 @@ TEST_F(Commands, ExportWhatTheyImport) {
         EXPECT_EQ(after[i].x, before[i].x);
         EXPECT_EQ(after[i].z, before[i].z);
         EXPECT_EQ(after[i].kind, before[i].kind);
+        EXPECT_EQ(after[i].variation, before[i].variation);
         EXPECT_EQ(after[i].scale, before[i].scale);
         EXPECT_EQ(after[i].turn, before[i].turn);
         EXPECT_LE(std::abs(after[i].lift), 1);
+    }
+    const std::string gltf = read("out.gltf");
+    EXPECT_NE(gltf.find("EXT_mesh_gpu_instancing"), std::string::npos);
+    // The same as a .glb, and far away.
+    perform(*session, "move", R"({"by": [3000000.5, -5000000.25]})");
+    const std::vector<PlacedPlant> far = plants(*session);
+    ASSERT_TRUE(write_text_file(folder + "/far.glb", placed_as_gltf(session->document(), session->document().root(),
+                                                                    session->terrain(), true)));
+    perform(*session, "delete", "{}");
+    perform(*session, "import_gltf", R"({"gltf": "far.glb"})");
+    after = plants(*session);
+    ASSERT_EQ(after.size(), far.size());
+    for (size_t i = 0; i < after.size(); ++i) {
+        EXPECT_EQ(std::pair(after[i].x, after[i].z), std::pair(far[i].x, far[i].z));
+        EXPECT_EQ(after[i].turn, far[i].turn);
+        EXPECT_EQ(after[i].scale, far[i].scale);
     }
     perform(*session, "delete", "{}");
     // Heights set scales, so ferns, whose height is not known, need their own.
@@ -327,7 +407,8 @@ TEST_F(Commands, ExportWhatTheyImport) {
 
 TEST_F(Commands, ImportNodesOfOtherPrograms) {
     ASSERT_TRUE(
-        write_text_file(folder + "/in.gltf", R"({"asset": {"version": "2.0"}, "meshes": [{"name": "QURO"}],
+        write_text_file(folder + "/in.gltf", R"({"asset": {"version": "2.0"}, "meshes": [{"name": "QURO", "primitives": [{"attributes": {"POSITION": 0}}]}],
+        "accessors": [{"componentType": 5126, "count": 3, "type": "VEC3"}],
         "nodes": [{"name": "stand", "translation": [10, 0, 0], "rotation": [0, 0.70710678, 0, 0.70710678], "scale": [2, 2, 2], "children": [1, 2, 3]},
                   {"name": "fern.012", "translation": [5, 0, 0]}, {"mesh": 0}, {"name": "camera"}]})"));
     auto session = open();
@@ -341,7 +422,11 @@ TEST_F(Commands, ImportNodesOfOtherPrograms) {
     for (const char* broken :
          {R"({"nodes": [{"children": [0]}]})", R"({"nodes": [{"name": "oak", "rotation": [0, 0, 0, 0]}]})",
           R"({"nodes": [{"name": "oak", "translation": [1e300, 0, 0]}]})", R"({"nodes": [{"name": "tree"}]})",
-          R"({"nodes": [{"children": [1, 1]}, {"name": "oak"}]})", R"({"nodes": 3})", "[", "glTF123"}) {
+          R"({"nodes": [{"children": [1, 1]}, {"name": "oak"}]})", R"({"nodes": 3})", "[", "glTF123",
+          R"({"asset": {"version": "2.0"}, "nodes": [{"children": [0], "name": "oak"}]})",
+          R"({"asset": {"version": "2.0"}, "nodes": [{"name": "oak", "rotation": [0, 0, 0, 0]}]})",
+          R"({"asset": {"version": "2.0"}, "nodes": [{"name": "oak", "translation": [1e9, 0, 0]}]})",
+          R"({"asset": {"version": "2.0"}, "nodes": [{"name": "tree"}]})"}) {
         ASSERT_TRUE(write_text_file(folder + "/in.gltf", broken));
         refuse(*session, "import_gltf", R"({"gltf": "in.gltf"})");
     }

@@ -8,6 +8,7 @@ namespace coppice::hostile {
 const std::vector<Reader>& readers() {
     static const std::vector<Reader> k_readers{
         {"gltf", false, read_gltf, gltf_seeds, nullptr},
+        {"gltf_places", false, read_gltf_places, gltf_places_seeds, nullptr},
         {"species", true, read_species, species_seeds, nullptr},
         {"scene", true, read_scene, scene_seeds, nullptr},
         {"csv", true, read_csv, csv_seeds, nullptr},
@@ -22,6 +23,7 @@ const std::vector<Reader>& readers() {
         {"r16", false, read_r16, r16_seeds, nullptr},
         {"ground", false, read_ground, ground_seeds, seal_ground},
         {"ppm", false, read_ppm, ppm_seeds, nullptr},
+        {"pnm", false, read_pnm, pnm_seeds, nullptr},
         {"pfm", false, read_pfm, pfm_seeds, nullptr},
         {"png", false, read_png, png_seeds, nullptr},
     };

@@ -38,6 +38,8 @@ bool read_heights_pfm(std::span<const std::byte> bytes);
 bool read_r16(std::span<const std::byte> bytes);
 bool read_ground(std::span<const std::byte> bytes);  // packed grounds
 bool read_ppm(std::span<const std::byte> bytes);     // pictures
+bool read_gltf_places(std::span<const std::byte> bytes);
+bool read_pnm(std::span<const std::byte> bytes);
 bool read_pfm(std::span<const std::byte> bytes);
 bool read_png(std::span<const std::byte> bytes);  // and JPEG, by the images plugin where it is there
 

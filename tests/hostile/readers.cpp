@@ -12,8 +12,10 @@
 #include "plugins/terrain/load_terrain.h"
 #include "plugins/terrain/read_heights.h"
 #include "plugins/vegetation/cook/import/import_gltf.h"
+#include "plugins/vegetation/cook/import/read_named_places.h"
 #include "plugins/vegetation/eco/camera_path.h"
 #include "plugins/vegetation/eco/load_scene.h"
+#include "plugins/vegetation/eco/place_named.h"
 #include "plugins/vegetation/eco/placed_plants.h"
 #include "plugins/vegetation/eco/populated_scene.h"
 #include "plugins/vegetation/eco/read_placements_csv.h"
@@ -121,6 +123,26 @@ bool read_gltf(std::span<const std::byte> bytes) {
     const auto plant = import_gltf_memory(bytes, "hostile.gltf", "/nonexistent", settings);
     if (!accepted(plant)) return false;
     require_description(*plant);
+    return true;
+}
+
+bool read_gltf_places(std::span<const std::byte> bytes) {
+    const auto named = read_named_places_memory(bytes, "hostile.gltf", "/nonexistent", 1 << 24);
+    if (!accepted(named)) return false;
+    for (const NamedPlaces& many : *named) {
+        require(!many.names.empty() && many.names.size() <= 2, "places are called something");
+        for (const NamedPlace& place : many.places) {
+            require(all_finite(place.at) && std::isfinite(place.scale) && place.scale > 0.0, "they are somewhere");
+            require(std::fabs(glm::length(place.turn) - 1.0f) < 1e-3f, "turns are unit");
+        }
+    }
+    PlaceNamedSettings settings;
+    settings.kinds["oak"] = {};
+    if (const auto plants = place_named(*named, settings, "hostile.gltf"))
+        for (const Placement& plant : *plants)
+            require(all_finite(plant.position_world) && plant.scale > 0.0f && std::isfinite(plant.scale) &&
+                        plant.model.model == 0,
+                    "plants stand somewhere");
     return true;
 }
 
@@ -275,6 +297,15 @@ bool read_ppm(std::span<const std::byte> bytes) {
     if (!accepted(picture)) return false;
     require(!picture->empty() && picture->rgba.size() == size_t(4) * picture->width * picture->height,
             "pixels are there");
+    return true;
+}
+
+bool read_pnm(std::span<const std::byte> bytes) {
+    const Scratch file("hostile.pnm", bytes);
+    const auto picture = coppice::read_pnm(file.path());
+    if (!accepted(picture)) return false;
+    require(picture->rgb.size() == size_t(3) * picture->width * picture->height, "pixels are there");
+    for (const float value : picture->rgb) require(value >= 0.0f && value <= 1.0f, "values are shares");
     return true;
 }
 

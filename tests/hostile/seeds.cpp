@@ -104,6 +104,19 @@ std::vector<Bytes> gltf_seeds() {
 "buffers":[{"byteLength":42,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAABAAIA"}]})")};
 }
 
+std::vector<Bytes> gltf_places_seeds() {
+    TinyGltf gltf;
+    add_triangle(gltf);
+    const int16_t turns[8] = {0, 23170, 0, 23170, 0, 0, 0, 32767};
+    const int rotations = gltf.accessor(gltf.view(turns, sizeof turns), 5122, "VEC4", 2, "\"normalized\":true");
+    const int places = gltf.vectors({{1, 2, 3}, {4, 5, 6}}), scales = gltf.vectors({{1, 1, 1}, {2, 2, 2}});
+    gltf.node(R"("name":"oak.003","mesh":0,"translation":[65536,0,0],"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{"TRANSLATION":)" +
+              std::to_string(places) + ",\"ROTATION\":" + std::to_string(rotations) + ",\"SCALE\":" + std::to_string(scales) + "}}}");
+    return {gltf.glb(), as_bytes(R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
+"nodes":[{"name":"stand","scale":[2,2,2],"children":[1,2]},{"name":"oak","translation":[5,0,0],"rotation":[0,0.7071068,0,0.7071068]},
+{"name":"oak_2","matrix":[0,0,-3,0,0,3,0,0,3,0,0,0,5,6,7,1]}]})")};
+}
+
 std::vector<Bytes> species_seeds() {
     return content_files("species", {"grass.json", "daisy.json", "fern.json", "shrub.json"});
 }
@@ -117,7 +130,7 @@ std::vector<Bytes> scene_seeds() {
 "placements":[{"plant":"oak","at":[3,-8],"turn_deg":90,"tilt_deg":2,"tilt_towards_deg":45,"scale":1.2,"variation":0},
 {"scatter":{"plants":{"oak":3,"fern":1},"region":"meadow","exclude":["path",{"rectangle":{"center":[9,9],"size_m":[4,2],"turn_deg":30}}],"edge_m":5,"density_per_m2":0.05,"spacing_m":2,"scale":[0.8,1.2],"tilt_deg":3,"align_to_ground":0.2,"slope_max_deg":35,"altitude_m":[-10,40],"density_noise":{"wavelength_m":30,"from":0.45,"to":3,"softness":0.05,"octaves":3,"seed":1},"seed":1}},
 {"scatter":{"plant":"oak","grid":{"spacing_m":7,"jitter_m":2.45,"columns":4,"rows":3},"height_m":[10,16]}},
-{"scatter":{"plant":"fern","count":20,"region":{"circle":{"center":[0,0],"radius_m":40}}}}],
+{"scatter":{"plant":"fern","count":20,"region":{"circle":{"center":[0,0],"radius_m":40}},"distance":[{"from":["oak"],"least_m":0.5},{"from":"oak","most_m":30}]}}],
 "sun":{"azimuth_deg":135,"elevation_deg":40,"color":[3,2.75,2.35]},"sky":{"zenith":[0.2,0.38,0.75],"horizon":[0.62,0.74,0.88],"ground":[0.1,0.1,0.06]},
 "haze":{"color":[0.62,0.72,0.84],"density_per_m":0.0006},"exposure":1.0,
 "camera_path":[{"time_s":0,"at":[0,45],"above_m":1.7,"look_at":[0,0],"look_above_m":1.7},{"time_s":10,"at":[0,30,0],"yaw_deg":0,"pitch_deg":-12,"fov_deg":60,"near_m":0.1}],
@@ -199,6 +212,10 @@ std::vector<Bytes> ground_seeds() {
 }
 
 std::vector<Bytes> ppm_seeds() { return {as_bytes("P6\n# a picture\n2 2\n255\nabcdefghijkl")}; }
+
+std::vector<Bytes> pnm_seeds() {
+    return {as_bytes("P5\n# a map\n2 2\n255\nabcd"), as_bytes("P5 2 1 60000 abcd"), as_bytes("P6 1 1 255 abc")};
+}
 
 std::vector<Bytes> pfm_seeds() {
     const float pixels[12] = {0.0f, 1.0f, 2.0f};

@@ -19,6 +19,8 @@ std::vector<Bytes> heights_pfm_seeds();
 std::vector<Bytes> r16_seeds();
 std::vector<Bytes> ground_seeds();
 std::vector<Bytes> ppm_seeds();
+std::vector<Bytes> gltf_places_seeds();
+std::vector<Bytes> pnm_seeds();
 std::vector<Bytes> pfm_seeds();
 std::vector<Bytes> png_seeds();
 

@@ -88,6 +88,39 @@ class Populate : public testing::Test {
     std::string folder_, scene_, out_;
 };
 
+// A picture, through the images plugin or without it, is what a scene is made of; so are colours.
+TEST_F(Populate, MapsAndColoursAreWhatPacksAreMadeOf) {
+    auto write_with = [&](const std::string& plant, const std::string& scatter) {
+        write(scene_, R"({"plants": {"daisy": {"source": "daisy.json")" + plant + R"(}},
+            "placements": [{"scatter": {"plant": "daisy", "count": 600, "region": {"circle": {"center": [0, 0], "radius_m": 18}})" +
+                          scatter + "}}]}");
+    };
+    const std::string map = R"(, "density_map": {"picture": "map.pgm", "center": [0, 0], "size_m": [40, 40]})";
+    write_with("", map);
+    write(folder_ + "/map.pgm", "P5 2 1 255 " + std::string("\xff\x00", 2));
+    ASSERT_EQ(populate(out_).exit_code, 0);
+    const Files first = contents(out_);
+    ASSERT_EQ(populate(out_).exit_code, 0);
+    EXPECT_EQ(contents(out_), first);
+    write(folder_ + "/map.pgm", "P5 2 1 255 " + std::string("\x00\xff", 2));
+    ASSERT_EQ(populate(out_).exit_code, 0);
+    const Files second = contents(out_);
+    EXPECT_NE(second, first);
+    write_with(R"(, "color_variation": {"brightness": 0.3})", map);
+    ASSERT_EQ(populate(out_).exit_code, 0);
+    const Files varied = contents(out_);
+    EXPECT_NE(varied, second);
+    EXPECT_NE(varied.at("scene.json").find("color_variation"), std::string::npos);
+    // A build knows the picture as an input.
+    const std::string ninja = folder_ + "/build.ninja";
+    ASSERT_EQ(populate(out_, {"--ninja", ninja}).exit_code, 0);
+    EXPECT_NE(read_file(ninja).find("map.pgm"), std::string::npos);
+    write(folder_ + "/map.pgm", "P5 2 1 255 x");
+    const ProgramResult broken = populate(out_);
+    EXPECT_EQ(broken.exit_code, 2);
+    EXPECT_NE(broken.err.find("density_map.picture"), std::string::npos) << broken.err;
+}
+
 TEST_F(Populate, GivesAPlayerAllOfTheScene) {
     const ProgramResult result = populate(out_);
     ASSERT_EQ(result.exit_code, 0) << result.err;

@@ -12,6 +12,7 @@
 #include "plugins/modeller/modeller.h"
 #include "plugins/terrain/terrain.h"
 #include "plugins/vegetation/cook/cook_file.h"
+#include "plugins/vegetation/cook/import/read_named_places.h"
 #include "plugins/vegetation/eco/load_scene.h"
 #include "plugins/vegetation/eco/plant_scene.h"
 #include "plugins/vegetation/eco/populated_scene.h"
@@ -77,6 +78,7 @@ Status load_scene_and_plants(const std::string& scene_path, const std::string& c
     settings.terrain = registry.find<TerrainInterface>(k_terrain_interface, k_terrain_version);
     settings.modeller = modeller;
     settings.cache_dir = cache_dir;
+    settings.read_gltf = read_named_places;
     Scene scene;
     if (is_plant_file(scene_path)) {
         scene.models = {plant_scene_model(scene_path)};

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include "plugins/modeller/modeller.h"
 #include "plugins/vegetation/cook/cook_file.h"
+#include "plugins/vegetation/cook/import/read_named_places.h"
 #include "plugins/vegetation/eco/camera_path.h"
 #include "plugins/vegetation/eco/load_scene.h"
 #include "plugins/vegetation/eco/make_tiles.h"
@@ -25,10 +26,13 @@ std::string cache_dir_of(const PlayOptions& options) {
     return options.cache_dir.empty() ? default_cache_dir() : options.cache_dir;
 }
 
-SceneLoadSettings scene_load_settings(const Registry& registry, const PlayOptions& options) {
-    return {registry.find<TerrainInterface>(k_terrain_interface, k_terrain_version),
-            registry.find<ModellerInterface>(k_modeller_interface, k_modeller_version),
-            cache_dir_of(options)};
+SceneLoadSettings scene_load_settings(PlayHost& host, const PlayOptions& options) {
+    return {host.registry.find<TerrainInterface>(k_terrain_interface, k_terrain_version),
+            host.registry.find<ModellerInterface>(k_modeller_interface, k_modeller_version),
+            cache_dir_of(options),
+            {},
+            [&host] { return host.find_images(); },
+            read_named_places};
 }
 
 }  // namespace
@@ -54,7 +58,7 @@ Status PlayHost::load_scene_file(const PlayOptions& options) {
     if (is_plant_file(options.scene)) {
         scene.models = {plant_scene_model(options.scene)};
     } else {
-        COPPICE_TRY(scene, load_scene(options.scene, scene_load_settings(registry, options)));
+        COPPICE_TRY(scene, load_scene(options.scene, scene_load_settings(*this, options)));
     }
     if (!options.path.empty()) {
         COPPICE_TRY(scene.camera_path, load_camera_path(options.path, scene.terrain.get()));
@@ -126,7 +130,7 @@ Result<std::vector<Plant>> PlayHost::load_plants(const PlayOptions& options) {
         COPPICE_TRY(const Scene again,
                     is_plant_file(options.scene)
                         ? make_plant_scene(options.scene, bounds.front(), options.height, terrain)
-                        : load_scene(options.scene, scene_load_settings(registry, options)));
+                        : load_scene(options.scene, scene_load_settings(*this, options)));
         bare_terrain = again.terrain;
     }
     finish_tiles(scene, bounds);

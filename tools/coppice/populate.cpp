@@ -64,8 +64,7 @@ Result<Pieces> pieces_of(const Whole& whole, const MosaicNode& node) {
         std::any_of(pieces.plants.begin(), pieces.plants.end(), [](const PlantPiece& piece) {
             return !piece.source_path.ends_with(".json") && !piece.source_path.ends_with(".plant");
         });
-    if (textured && whole.registry.load("images"))
-        pieces.settings.images = whole.registry.find<ImagesInterface>(k_images_interface, k_images_version);
+    if (textured) pieces.settings.images = whole.settings.find_images();
     return pieces;
 }
 
@@ -283,6 +282,10 @@ Status read_whole(Whole& whole) {
     for (const char* name : {"terrain", "modeller"}) COPPICE_CHECK(registry.load(name));
     settings.terrain = registry.find<TerrainInterface>(k_terrain_interface, k_terrain_version);
     settings.modeller = registry.find<ModellerInterface>(k_modeller_interface, k_modeller_version);
+    settings.find_images = [&registry]() -> const ImagesInterface* {
+        if (!registry.load("images")) return nullptr;
+        return registry.find<ImagesInterface>(k_images_interface, k_images_version);
+    };
     OpenedFiles opened;
     COPPICE_TRY(whole.tree, read_mosaic_tree(settings.scene));
     whole.authored = opened.paths();

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include "plugins/vegetation/cook/cook_file.h"
+#include "plugins/vegetation/cook/import/read_named_places.h"
 #include "plugins/vegetation/eco/load_scene.h"
 #include "plugins/vegetation/eco/make_tiles.h"
 #include "plugins/vegetation/eco/shade_ground.h"
@@ -89,6 +90,7 @@ uint64_t key_of(const Scene& part, std::span<const Plant> plants) {
         add(model.name.data(), model.name.size());
         add(model.source_path.data(), model.source_path.size());
         add(&model.importance, sizeof model.importance);
+        if (model.color_variation.any()) add(&model.color_variation, sizeof model.color_variation);
         key = hash_combine(key, plants[m].content_hash);
     }
     for (const SceneTile& tile : part.tiles) {
@@ -144,7 +146,8 @@ Result<Pieces> list_pieces(const PopulateSettings& settings) {
     {
         OpenedFiles opened;
         COPPICE_TRY(pieces.scene,
-                    load_scene(settings.scene, {settings.terrain, settings.modeller, cache_dir}));
+                    load_scene(settings.scene,
+                               {settings.terrain, settings.modeller, cache_dir, {}, settings.find_images, read_named_places}));
         COPPICE_CHECK(list_plants(pieces));
         pieces.authored = opened.paths();
     }

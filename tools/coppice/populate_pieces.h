@@ -4,6 +4,7 @@
 // process, and none is made twice.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <set>
 #include <string>
 #include <vector>
@@ -23,6 +24,7 @@ struct PopulateSettings {
     const TerrainInterface* terrain = nullptr;
     const ModellerInterface* modeller = nullptr;
     const ImagesInterface* images = nullptr;  // may be null where no plant has textures
+    std::function<const ImagesInterface*()> find_images;  // for maps of density
 };
 
 struct PlantPiece {

@@ -15,6 +15,7 @@ layout(local_size_x_id = 0) in;
 layout(constant_id = 1) const bool k_entry_a_lane = false;
 
 layout(constant_id = 4) const bool k_shadow = false;
+layout(constant_id = 5) const bool k_tinted = false;  // instances carry tints (draw/work_list.h, set_tint)
 
 layout(push_constant) uniform Frame {
     vec4 row_x, row_y, row_w;
@@ -80,6 +81,7 @@ struct Transform {
     vec3 place;  // of the plant's origin
     float scale;
     bool ground;
+    vec3 tint;  // b, p and q of eco/vary_color.h
 };
 
 Transform load_transform(uint instance, bool ground) {
@@ -104,6 +106,12 @@ Transform load_transform(uint instance, bool ground) {
     t.place = vec3(x.w, y.w, z.w);
     t.scale = foot.w;
     t.ground = ground;
+    t.tint = vec3(1.0, 1.0, 0.0);
+    if (k_tinted) {
+        ivec4 bits = floatBitsToInt(q) & 63;
+        int tint = bits.x | bits.y << 6 | bits.z << 12 | bits.w << 18;
+        t.tint += vec3(ivec3(tint << 24, tint << 16, tint << 8) >> 24) * vec3(1.0 / 128.0, 1.0 / 128.0, 1.0 / 64.0);
+    }
     return t;
 }
 
@@ -179,6 +187,21 @@ vec2 level_slope() {
 vec3 unit_normal(Transform t, uint surface) {
     vec3 n = turn_direction(t, decode_normal(surface));
     return n * inversesqrt(max(dot(n, n), 1.0e-30));
+}
+
+// eco/vary_color.cpp.
+vec3 tint_color(Transform t, vec3 c) {
+    float mean = (c.x + c.y + c.z) * (1.0 / 3.0);
+    return t.tint.x * (mean + t.tint.y * (c - mean) + (t.tint.z * 0.57735027) * (c.zxy - c.yzx));
+}
+
+// The surface in the plant's colours. place: any bits that tell primitives or pixels apart, by which colours are rounded.
+uint tint_surface(Transform t, uint surface, uint place) {
+    if (!k_tinted) return surface;
+    uint hash = place * 0x9e3779b9u ^ floatBitsToUint(t.tint.x + t.tint.y);
+    hash = (hash ^ hash >> 15) * 0x2c1b3c6du;
+    hash ^= hash >> 13;
+    return (surface & ~k_color_bits) | encode_color(tint_color(t, decode_color_linear(surface)), float(int(hash >> 8)) * (1.0 / 16777216.0));
 }
 
 // Turns a surface word from plant space into world space.

@@ -25,8 +25,8 @@ Corner load_corner(Transform t, uint index, out uint surface) {
     surface = turn_surface(t, v.w, k_kind_triangle);
     vec3 normal = decode_normal(surface);
     vec4 p = vec4(uintBitsToFloat(v.xyz), 1.0);
-    return Corner(vec3(dot(t.to_x, p), dot(t.to_y, p), dot(t.to_w, p)), dot(t.to_z, p), normal / max(length(normal), 1.0e-6), decode_color_linear(surface),
-                  decode_openness(surface));
+    return Corner(vec3(dot(t.to_x, p), dot(t.to_y, p), dot(t.to_w, p)), dot(t.to_z, p), normal / max(length(normal), 1.0e-6),
+                  k_tinted ? tint_color(t, decode_color_linear(surface)) : decode_color_linear(surface), decode_openness(surface));
 }
 
 // Where an edge crosses the near plane; always from the corner behind it, so that both triangles of the edge agree.
@@ -40,13 +40,8 @@ Corner cut_edge(Corner behind, Corner ahead) {
 // Rounded up or down by a fixed pattern, so that slow gradients show no bands.
 uint pack_surface(vec3 normal, vec3 color, float openness, uint leaf, ivec2 pixel) {
     float chance = dither_chance(pixel);
-    vec3 last = vec3(31.0, 63.0, 31.0);
-    vec3 low = min(floor(sqrt(clamp(color, 0.0, 1.0)) * last), last - 1.0);
-    vec3 low_value = low * low, high_value = (low + 1.0) * (low + 1.0);
-    vec3 share = (clamp(color, 0.0, 1.0) * last * last - low_value) / (high_value - low_value);
-    uvec3 level = uvec3(low + vec3(lessThan(vec3(chance), share)));
     uint open = uint(min(openness * 7.0 + chance, 7.0));
-    return encode_normal(normal) | level.x << 12 | level.y << 17 | level.z << 23 | open << 28 | leaf;
+    return encode_normal(normal) | encode_color(color, chance) | open << 28 | leaf;
 }
 
 void draw_triangle(Corner corners[3], uint leaf) {

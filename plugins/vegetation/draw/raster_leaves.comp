@@ -59,7 +59,7 @@ void main() {
             continue;
         vec4 depths = vec4(depth_of(from_grid, corner_a, w.x), depth_of(from_grid, corner_b, w.y),
                            depth_of(from_grid, corner_c, w.z), depth_of(from_grid, corner_d, w.w));
-        uint surface = turn_surface(t, end.z, k_kind_leaf);
+        uint surface = tint_surface(t, turn_surface(t, end.z, k_kind_leaf), begin.x ^ begin.y);
         Half first = half_of(b.xy - a.xy, c.xy - a.xy, depths.y - depths.x, depths.z - depths.x);
         Half second = half_of(c.xy - a.xy, d.xy - a.xy, depths.z - depths.x, depths.w - depths.x);
 

@@ -82,7 +82,7 @@ void main() {
         if (!(span < 1.0e7 && abs(a.y) + abs(b.y) < 1.0e7)) continue;  // overflowed: coordinates no plant has
         float slope = span > 0.0 ? (b.y - a.y) / span : 0.0;
         float depth_slope = span > 0.0 ? (depths.y - depths.x) / span : 0.0;
-        uint surface = turn_surface(t, v0.w, k_kind_line) & ~k_normal_bits;
+        uint surface = tint_surface(t, turn_surface(t, v0.w, k_kind_line), v0.x ^ v0.y) & ~k_normal_bits;
         LineNormals normals =
             line_normals(t, p1.xyz - p0.xyz, p0.xyz, v0.w, uintBitsToFloat(entry.owner_min));
         float width_px = entry.size_px * uintBitsToFloat(v1.w);

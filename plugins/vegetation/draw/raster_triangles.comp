@@ -71,7 +71,7 @@ void main() {
                 uint surface = chance < weight.x              ? surface0
                                : chance < weight.x + weight.y ? surface1
                                                               : surface2;
-                write_pixel(ivec2(column, row), dot(weight, depths), surface);
+                write_pixel(ivec2(column, row), dot(weight, depths), tint_surface(t, surface, floatBitsToUint(chance)));
             }
         }
     }

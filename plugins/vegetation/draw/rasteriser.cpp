@@ -135,35 +135,35 @@ Result<gpu::Pipeline> make_pipeline(const gpu::Device& device, const char* name,
 
 }  // namespace
 
-Status Rasteriser::make_raster_pipelines(Target& target) {
-    const uint32_t lanes = device_.limits.group_size, shadow = target.is_shadow ? 1 : 0;
+Status Rasteriser::make_raster_pipelines(RasterPipelines& made, bool is_shadow, bool is_tinted) {
+    const uint32_t lanes = device_.limits.group_size, shadow = is_shadow ? 1 : 0, tinted = is_tinted ? 1 : 0;
     auto make = [&](const char* name, std::span<const uint32_t> spirv, std::span<const BindingKind> bindings,
                     std::initializer_list<uint32_t> specialization) {
         return make_pipeline(device_, name, spirv, bindings, sizeof(RasterConstants), specialization);
     };
     for (uint32_t small = 0; small < 2; ++small) {
-        auto& pipelines = small ? target.lane_pipelines : target.group_pipelines;
+        auto& pipelines = small ? made.lanes : made.groups;
         auto points = [&](WorkKind kind, const char* name, uint32_t side_limit, uint32_t blend) -> Status {
             COPPICE_TRY(pipelines[size_t(kind)], make(name, k_splat_points_spirv, k_point_bindings,
-                                                      {lanes, small, side_limit, blend, shadow}));
+                                                      {lanes, small, side_limit, blend, shadow, tinted}));
             return {};
         };
-        if (!target.is_shadow) {
+        if (!is_shadow) {
             COPPICE_CHECK(points(WorkKind::points_1, "points, one pixel", 1, 0));
             COPPICE_CHECK(points(WorkKind::points_2, "points, up to two pixels", 2, 0));
         }
         COPPICE_CHECK(points(WorkKind::points_any, "points, any size", 0, 0));
         COPPICE_CHECK(points(WorkKind::points_blend, "points, blended", 0, 1));
         COPPICE_TRY(pipelines[size_t(WorkKind::lines)],
-                    make("lines", k_raster_lines_spirv, k_line_bindings, {lanes, small, 0, 0, shadow}));
+                    make("lines", k_raster_lines_spirv, k_line_bindings, {lanes, small, 0, 0, shadow, tinted}));
         COPPICE_TRY(pipelines[size_t(WorkKind::leaves)],
-                    make("leaves", k_raster_leaves_spirv, k_line_bindings, {lanes, small, 0, 0, shadow}));
+                    make("leaves", k_raster_leaves_spirv, k_line_bindings, {lanes, small, 0, 0, shadow, tinted}));
         COPPICE_TRY(
             pipelines[size_t(WorkKind::triangles)],
-            make("triangles", k_raster_triangles_spirv, k_triangle_bindings, {lanes, small, 0, 0, shadow}));
+            make("triangles", k_raster_triangles_spirv, k_triangle_bindings, {lanes, small, 0, 0, shadow, tinted}));
     }
-    COPPICE_TRY(target.big_pipeline, make("big triangles", k_raster_big_triangles_spirv, k_triangle_bindings,
-                                          {lanes, 0, 0, 0, shadow}));
+    COPPICE_TRY(made.big_triangles, make("big triangles", k_raster_big_triangles_spirv, k_triangle_bindings,
+                                          {lanes, 0, 0, 0, shadow, tinted}));
     return {};
 }
 
@@ -180,7 +180,8 @@ Result<gpu::Pipeline> Rasteriser::make_accumulate(const char* name, uint32_t sha
 }
 
 Status Rasteriser::make_pipelines() {
-    COPPICE_CHECK(make_raster_pipelines(picture_));
+    COPPICE_CHECK(make_raster_pipelines(picture_pipelines_, false, false));
+    picture_.pipelines = &picture_pipelines_;
     COPPICE_TRY(resolve_pipelines_[0], make_resolve("resolve", false, 0));
     COPPICE_TRY(resolve_mean_pipeline_, make_resolve("resolve of the mean", true, 0));
     COPPICE_TRY(accumulate_pipelines_[0], make_accumulate("accumulate", 0));
@@ -190,7 +191,8 @@ Status Rasteriser::make_pipelines() {
 // Those that a scene without shadows never waits for.
 Status Rasteriser::make_shadow_pipelines() {
     if (has_shadow_pipelines_) return {};
-    COPPICE_CHECK(make_raster_pipelines(shadows_));
+    COPPICE_CHECK(make_raster_pipelines(shadow_pipelines_, true, false));
+    shadows_.pipelines = &shadow_pipelines_;
     for (uint32_t maps : {1u, 2u}) {
         COPPICE_TRY(resolve_pipelines_[maps], make_resolve("resolve, shadowed", false, maps));
         COPPICE_TRY(accumulate_pipelines_[maps], make_accumulate("accumulate, shadowed", maps));
@@ -206,6 +208,10 @@ Status Rasteriser::set_geometry(const GeometryData& data) {
         return fail(ErrorId::limit_exceeded, "", "geometry",
                     std::to_string(vertex_count) + " vertices in one scene",
                     "this device takes " + std::to_string(device_.limits.texel_elements));
+    if (data.has_tints && !has_tinted_pipelines_) {
+        COPPICE_CHECK(make_raster_pipelines(tinted_pipelines_, false, true));
+        has_tinted_pipelines_ = true;
+    }
     COPPICE_TRY(gpu::Buffer vertices,
                 gpu::Buffer::create(
                     device_, texel_buffer(vertex_count * sizeof(PackedVertex), VK_FORMAT_R32G32B32A32_UINT,
@@ -224,6 +230,7 @@ Status Rasteriser::set_geometry(const GeometryData& data) {
     COPPICE_CHECK(stage_geometry(vertices, std::as_bytes(data.vertices), staged_vertices));
     COPPICE_CHECK(stage_geometry(owners, std::as_bytes(data.owners), staged_owners));
     device_.wait_idle();
+    has_tints_ = data.has_tints;
     retired_.keep(std::exchange(staged_vertices_, std::move(staged_vertices)));
     retired_.keep(std::exchange(staged_owners_, std::move(staged_owners)));
     retired_.keep(std::exchange(vertices_, std::move(vertices)));
@@ -372,8 +379,8 @@ void Rasteriser::draw(VkCommandBuffer commands, const Target& target, WorkKind k
             pipeline.bind(commands, bound, &constants, sizeof constants);
             pipeline.dispatch(commands, (range.entry_count - 1) / entries_a_group + 1);
         };
-        dispatch(target.group_pipelines[size_t(kind)], image.ranges.groups[size_t(kind)], 1);
-        dispatch(target.lane_pipelines[size_t(kind)], image.ranges.lanes[size_t(kind)],
+        dispatch(target.pipelines->groups[size_t(kind)], image.ranges.groups[size_t(kind)], 1);
+        dispatch(target.pipelines->lanes[size_t(kind)], image.ranges.lanes[size_t(kind)],
                  device_.limits.group_size);
     }
 }
@@ -385,8 +392,8 @@ void Rasteriser::draw_big_triangles(VkCommandBuffer commands, const Target& targ
         if (!image.ranges.any(WorkKind::triangles)) continue;
         const gpu::BoundBuffer buffers[] = {{&target.image, image.first_byte}, &vertices_, &slot.entries,
                                             &slot.instances, {&target.big_triangles, i * target.big_bytes()}};
-        target.big_pipeline.bind(commands, buffers, &image.constants, sizeof image.constants);
-        target.big_pipeline.dispatch(commands,
+        target.pipelines->big_triangles.bind(commands, buffers, &image.constants, sizeof image.constants);
+        target.pipelines->big_triangles.dispatch(commands,
                                      device_.limits.is_cpu ? 64 : 4096);  // groups stride over the list
     }
 }
@@ -557,6 +564,7 @@ void Rasteriser::set_frame(uint32_t slot, const WorkList::Layout& layout, const 
     raster.size_px = vec2(float(width_), float(height_));
     raster.near_w = camera.near_m;
     raster.view = resolve_.view = uint32_t(picture.view);
+    picture_.pipelines = has_tints_ && picture.view == RepresentationView::lit ? &tinted_pipelines_ : &picture_pipelines_;
     raster.big_triangle_limit = picture_.big_limit;
     resolve_.new_share = picture.new_share;
     resolve_.shift_px = picture.shift_px;

@@ -20,6 +20,7 @@ struct GeometryData {
     std::span<const PackedVertex> vertices;
     std::span<const uint32_t> owners;
     uint32_t reserved_points = 0;  // room behind both for points and owners that come later
+    bool has_tints = false;        // all instances of plants carry theirs (set_tint)
 };
 
 // How the frame's surfaces become a picture.
@@ -54,6 +55,12 @@ struct ShadowSettings {
     float first_texel_m = 0.0f;  // its texels'
     bool is_nested() const { return first_texel_m > 0.0f; }
     float far_m = 1000.0f;       // along the view; shadows fade before
+};
+
+// Of each kind by groups and by lanes.
+struct RasterPipelines {
+    std::array<gpu::Pipeline, k_work_kinds> groups, lanes;
+    gpu::Pipeline big_triangles;
 };
 
 class Rasteriser {
@@ -132,8 +139,7 @@ class Rasteriser {
         uint32_t big_limit = 0, most_images = 1;
         VkDeviceSize big_bytes() const { return 16 + 8 * VkDeviceSize(big_limit); }  // of one list
         ResourceIndex image_resource = 0, big_resource = 0;
-        std::array<gpu::Pipeline, k_work_kinds> group_pipelines, lane_pipelines;
-        gpu::Pipeline big_pipeline;
+        const RasterPipelines* pipelines = nullptr;
         uint32_t clear_pass = 0, big_pass = 0;
         std::array<uint32_t, k_work_kinds> draw_passes{};
         std::array<TargetImage, k_most_work_maps> images;
@@ -159,7 +165,7 @@ class Rasteriser {
         : device_(device), graph_(graph), retired_(frame_slots), host_(device, graph) {}
     Status stage_geometry(const gpu::Buffer& target, std::span<const std::byte> bytes, gpu::Buffer& staging);
     Status make_pipelines();
-    Status make_raster_pipelines(Target& target);
+    Status make_raster_pipelines(RasterPipelines& pipelines, bool shadow, bool tinted);
     Status make_shadow_pipelines();
     // shadow_maps: 0, 1 or, for several, 2.
     Result<gpu::Pipeline> make_resolve(const char* name, bool mean, uint32_t shadow_maps) const;
@@ -188,6 +194,9 @@ class Rasteriser {
     // By how many shadow maps are looked up: none, one, several.
     std::array<gpu::Pipeline, 3> resolve_pipelines_, accumulate_pipelines_;
     gpu::Pipeline resolve_mean_pipeline_;
+    // The tinted ones are made for the first scene that has tints: others neither wait for them nor pay for them.
+    RasterPipelines picture_pipelines_, tinted_pipelines_, shadow_pipelines_;
+    bool has_tints_ = false, has_tinted_pipelines_ = false;
     ResourceIndex color_resource_ = 0, radiance_resource_ = 0, vertices_resource_ = 0, owners_resource_ = 0,
                   big_count_resource_ = 0;
     uint32_t upload_pass_ = 0, big_count_pass_ = 0, accumulate_pass_ = 0, resolve_pass_ = 0;

@@ -130,6 +130,8 @@ Result<SceneGeometry> gather_geometry(const GeometrySource& source) {
             add_part(cell);
         }
         model.has_cells = !plant.cells.empty();
+        if (i < source.models.size()) model.tints = ColorTints(source.models[i].color_variation);
+        geometry.has_tints |= model.tints.any();
         geometry.models.push_back(model);
     }
     for (const TileCloud* cloud : source.clouds) {

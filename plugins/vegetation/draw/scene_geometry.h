@@ -17,6 +17,7 @@ struct DrawModel {
     uint32_t first_part, part_count;
     uint64_t triangle_count;
     bool has_cells;  // in any of its parts
+    ColorTints tints;
 };
 
 // The octree cells of a part, which are parts as well.
@@ -55,6 +56,7 @@ struct SceneGeometry {
     std::vector<PartGeometry> part_geometry;
     std::vector<PartCells> part_cells;
     std::vector<PartSphere> part_spheres;
+    bool has_tints = false;  // of any of the models
     // For widest_spread_px.
     float least_importance = 1.0f, most_line_width = 1.0f;
     // Until uploaded.

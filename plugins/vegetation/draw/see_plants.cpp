@@ -194,6 +194,7 @@ class Viewer {
         seen_.seed[at] = run_.models[block_.index[i]].seed;
         seen_.instances[at] = {block_.x[i],      block_.y[i],      block_.z[i],      block_.scale[i],
                                block_.turn_x[i], block_.turn_y[i], block_.turn_z[i], block_.turn_w[i]};
+        if (geometry_.has_tints) set_tint(seen_.instances[at], model.tints.tint_of(seen_.seed[at]));
         const float own_place =
             model.has_cells ? share_of_own_place(block_.distance_m[i], block_.radius_m[i]) : 0.0f;
         seen_.in_cells[at] = own_place > 0.0f;

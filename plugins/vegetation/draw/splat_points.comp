@@ -82,7 +82,7 @@ void main() {
                        all(lessThan(p.xy, vec2(size) + 64.0));
         if (!in_view) continue;
         ivec2 corner = ivec2(first);
-        uint surface = turn_surface(t, vertex.w, k_kind_point);
+        uint surface = tint_surface(t, turn_surface(t, vertex.w, k_kind_point), vertex.x ^ vertex.y);
         float depth = frame.near_w / p.z;
         float height = dot(t.turn_y, position) + t.place.y;
         vec2 slope = level * (frame.near_w / height);

@@ -29,6 +29,16 @@ vec3 decode_color_linear(uint surface) {
     return c * c;
 }
 
+// Rounded up or down so that the mean over chances in [0, 1) is the linear mean.
+uint encode_color(vec3 color, float chance) {
+    vec3 last = vec3(31.0, 63.0, 31.0);
+    vec3 scaled = clamp(color, 0.0, 1.0);
+    vec3 low = min(floor(sqrt(scaled) * last), last - 1.0);
+    vec3 share = (scaled * last * last - low * low) / (2.0 * low + 1.0);
+    ivec3 level = ivec3(low) + ivec3(lessThan(vec3(chance), share));
+    return uint(level.x << 12 | level.y << 17 | level.z << 23);
+}
+
 float decode_openness(uint surface) { return float(surface >> 28 & 7u) / 7.0; }
 
 #endif

@@ -4,6 +4,7 @@
 #pragma once
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cassert>
 #include <cstdint>
 #include <span>
@@ -44,6 +45,17 @@ struct WorkInstance {
     float turn_x = 0.0f, turn_y = 0.0f, turn_z = 0.0f, turn_w = 1.0f;  // quaternion
 };
 static_assert(sizeof(WorkInstance) == 32);
+// In scenes of which some plants have tints (eco/vary_color.h), in the last six bits of the quaternion's parts, where they move
+// nothing that could be seen.
+inline void set_tint(WorkInstance& instance, uint32_t tint) {
+    for (float* part : {&instance.turn_x, &instance.turn_y, &instance.turn_z, &instance.turn_w}) {
+        // Not in a nought, which would become a denormal number: CPUs calculate slowly with these.
+        constexpr uint32_t k_next_to_nothing = 0x30000000u;  // 2^-31
+        const uint32_t bits = *part == 0.0f ? k_next_to_nothing : std::bit_cast<uint32_t>(*part) & ~63u;
+        *part = std::bit_cast<float>(bits | (tint & 63u));
+        tint >>= 6;
+    }
+}
 // Neither turned nor scaled.
 inline WorkInstance instance_at(vec3 origin_camera) {
     return {origin_camera.x, origin_camera.y, origin_camera.z};

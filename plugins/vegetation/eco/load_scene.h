@@ -2,7 +2,9 @@
 #pragma once
 #include <functional>
 #include <string>
+#include "plugins/images/images.h"
 #include "plugins/modeller/modeller.h"
+#include "plugins/vegetation/eco/place_named.h"
 #include "plugins/vegetation/eco/scene.h"
 
 namespace coppice {
@@ -13,6 +15,10 @@ struct SceneLoadSettings {
     std::string cache_dir;                        // of measured populations; empty: measured each time
     // Of scenes' files and their packed plants; for who has them in memory. Empty: read from the disk.
     std::function<Result<std::string>(const std::string& path)> read_file;
+    // Asked for where a density map is neither PGM nor PPM; empty: such a map is refused.
+    std::function<const ImagesInterface*()> find_images;
+    // Of a glTF file; empty: a scene with such placements is refused.
+    ReadNamedPlaces read_gltf;
 };
 
 // Deterministic: same files, same scene, on any number of threads. Tiles' bounds hold only the plants' feet

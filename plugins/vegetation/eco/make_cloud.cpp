@@ -8,6 +8,7 @@
 #include "plugins/vegetation/plant/direction_form.h"
 #include "plugins/vegetation/plant/pack.h"
 #include "plugins/vegetation/plant/point_run.h"
+#include "runtime/core/hash.h"
 
 namespace coppice {
 namespace {
@@ -152,9 +153,14 @@ TileCloud gather_cloud(std::span<const PlantPosition> positions, std::span<const
                        std::span<const SceneModel> scene_models) {
     assert(positions.size() == turns.size() && positions.size() == models.size());
     DemandsOfModels demands(plants, scene_models);
+    std::vector<ColorTints> tints_of_model;
+    for (const SceneModel& model : scene_models) tints_of_model.emplace_back(model.color_variation);
+    std::vector<uint32_t> tints(positions.size(), 0);
     Totals totals;
     std::vector<Source> sources;
     for (size_t i = 0; i < positions.size(); ++i) {
+        if (models[i].model < tints_of_model.size())
+            tints[i] = tints_of_model[models[i].model].tint_of(models[i].seed);
         if (!is_usable(positions[i])) continue;
         const std::span<const PointDemand> parts = demands.of(models[i].model);
         const double scale_square = double(positions[i].scale) * double(positions[i].scale);
@@ -204,7 +210,9 @@ TileCloud gather_cloud(std::span<const PlantPosition> positions, std::span<const
         const vec3 at = vec3(place.x_tile, place.y_tile, place.z_tile) +
                         rotation * (vec3(stored.x_plant, stored.y_plant, stored.z_plant) * place.scale);
         const vec3 normal = rotation * decode_surface(stored.surface).normal;
-        cloud.points.push_back({at.x, at.y, at.z, replace_normal(stored.surface, normal)});
+        const uint32_t surface = tint_surface(tints[source.plant], stored.surface,
+                                              mix_bits(models[source.plant].seed + source.part) ^ mix_bits(source.given));
+        cloud.points.push_back({at.x, at.y, at.z, replace_normal(surface, normal)});
         cloud.densities.push_back(source.density);
         ++source.given;
         if (find_point(source, plant)) {

@@ -35,7 +35,7 @@ struct TileCloud {
 
 // The k_cloud_points points that the plants draw first, seen from all sides in the mean: ties by plant, part, point.
 // Lines give the points that stand for them where they are far (plant/line_points.h). plants[m] is what
-// models[i].model == m draws, with the importance of scene_models[m], 1 where there are none; requires models in range and
+// models[i].model == m draws, with the importance of scene_models[m], 1 where there are none, and in its colours; requires models in range and
 // columns of one length. What no scene has is left out: places that are not finite, scales that are not in (0, 1e5], parts
 // of more than 1000 km2.
 TileCloud gather_cloud(std::span<const PlantPosition> positions, std::span<const PlantTurn> turns,

@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr uint64_t k_format = 2;
+constexpr uint64_t k_format = 3;
 constexpr const char* k_remedy = "populate the scene again";
 constexpr uint64_t k_most_count = uint64_t(1) << 53;  // what JSON numbers hold
 
@@ -92,6 +92,10 @@ void read_packs(JsonObject& root, const std::filesystem::path& folder, Populated
         model.source_path = resolve(object.text("file"));
         populated.model_content_hashes.push_back(read_content_hash(object));
         model.importance = object.real("importance", 0.001f, 1000.0f);
+        if (object.has("color_variation")) {
+            JsonObject color = object.object("color_variation");
+            model.color_variation = read_color_variation(color);
+        }
         object.close();
     }
 }
@@ -115,11 +119,16 @@ std::string write_populated_scene(const PopulatedScene& populated) {
                          {"content", hash_to_hex(pack.content_hash)},
                          {"plants", pack.plant_count},
                          {"triangles", pack.triangle_count}});
-    for (size_t m = 0; m < scene.models.size(); ++m)
+    for (size_t m = 0; m < scene.models.size(); ++m) {
         plants.push_back({{"name", scene.models[m].name},
                           {"file", scene.models[m].source_path},
                           {"content", hash_to_hex(populated.model_content_hashes[m])},
                           {"importance", scene.models[m].importance}});
+        if (const ColorVariation& color = scene.models[m].color_variation; color.any())
+            plants.back()["color_variation"] = {{"brightness", color.brightness},
+                                                {"hue_deg", color.hue_deg},
+                                                {"saturation", color.saturation}};
+    }
     for (const CameraKey& key : scene.camera_path) keys.push_back(json_of(key));
     ordered_json root = {{"populated", k_format}, {"name", scene.name}};
     if (populated.mosaic.empty()) {

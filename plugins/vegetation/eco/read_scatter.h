@@ -1,5 +1,6 @@
 // What a scene says about scattered plants, and the names it may use for them.
 #pragma once
+#include <functional>
 #include <map>
 #include <string>
 #include "plugins/shared/json_object.h"
@@ -10,6 +11,10 @@ namespace coppice {
 struct SceneNames {
     std::map<std::string, PlantKind> kinds;
     NamedRegions regions;
+    // A picture beside the file that is read. Empty: there are none.
+    std::function<Result<std::shared_ptr<const MapPicture>>(const std::string& name, MapChannel)> read_map;
+    // Where plants of a kind stand, of those that count for the scatter that is read. Empty: nothing stands yet.
+    std::function<Result<std::vector<dvec2>>(const std::string& kind)> places_of;
     // nullptr with the nearest names reported, where there is no such plant.
     const PlantKind* find_kind(JsonObject& object, const char* key, const std::string& name) const;
 };

@@ -5,6 +5,7 @@
 #include "plugins/vegetation/eco/camera_path.h"
 #include "plugins/vegetation/eco/ground_height.h"
 #include "plugins/vegetation/eco/measure_population.h"
+#include "plugins/vegetation/eco/place_named.h"
 #include "plugins/vegetation/eco/placed_plants.h"
 #include "plugins/vegetation/eco/quantise.h"
 #include "plugins/vegetation/eco/read_light.h"
@@ -23,6 +24,9 @@ namespace {
 
 constexpr float k_radians = k_pi / 180.0f;
 
+constexpr const char* k_placement_kinds[] = {"plant", "csv", "scatter", "packed", "gltf"};
+enum : size_t { k_single, k_csv, k_scatter, k_packed, k_gltf };
+
 struct Population {
     std::string name;
     uint32_t individual_count, first_model, model_count;
@@ -32,9 +36,17 @@ class SceneReader {
   public:
     SceneReader(JsonDocument& document, const std::string& path, const SceneLoadSettings& settings,
                 SceneRole role)
-        : document_(document), root_(document, document.root(), ""), settings_(settings), role_(role) {
+        : document_(document),
+          root_(document, document.root(), ""),
+          settings_(settings),
+          role_(role),
+          pictures_(settings.find_images) {
         scene_.path = path;
         folder_ = std::filesystem::path(path).parent_path();
+        names_.read_map = [this](const std::string& name, MapChannel channel) {
+            return pictures_.read(resolve(name), channel);
+        };
+        names_.places_of = [this](const std::string& kind) { return places_of(kind); };
     }
 
     Result<SceneFile> read() {
@@ -53,8 +65,7 @@ class SceneReader {
         read_regions();
         scene_.light = read_light(root_);
         const nlohmann::json* terrain = root_.find("terrain");
-        std::vector<JsonObject> placements;
-        if (!refers || root_.has("placements")) placements = root_.objects("placements");
+        if (!refers || root_.has("placements")) placements_ = root_.objects("placements");
         if (refers) file_.references = read_references(root_.objects("references"), folder_);
         root_.has("camera_path");
         root_.close();
@@ -64,7 +75,8 @@ class SceneReader {
             note_what_is_left_out();
         else if (terrain)
             COPPICE_CHECK(load_terrain(*terrain));
-        for (JsonObject& entry : placements) COPPICE_CHECK(read_placement(entry));
+        for (; next_placement_ < placements_.size(); ++next_placement_)
+            COPPICE_CHECK(read_placement(placements_[next_placement_]));
         if (role_ == SceneRole::root) {
             COPPICE_TRY(scene_.camera_path,
                         read_camera_path(root_, folder_, height_of(scene_.terrain.get())));
@@ -99,6 +111,11 @@ class SceneReader {
                 entry.whole("individuals", variations, k_individual_limit, variations);
             kind.height_m = entry.real("height_m", 0.001f, 1000.0f, 0.0f);
             float importance = entry.real("importance", 0.001f, 1000.0f, 1.0f);
+            ColorVariation color;
+            if (entry.has("color_variation")) {
+                JsonObject object = entry.object("color_variation");
+                color = read_color_variation(object);
+            }
             entry.close();
             if (individuals > 1 && !source.ends_with(".json"))
                 entry.report(ErrorId::value_out_of_range, variations > 1 ? "variations" : "individuals",
@@ -109,7 +126,7 @@ class SceneReader {
             if (!document_.sound()) return;
             kind.individuals.clear();
             for (uint32_t v = 0; v < variations; ++v) {
-                scene_.models.push_back({name, resolve(source), v, importance});
+                scene_.models.push_back({name, resolve(source), v, importance, color});
                 kind.individuals.push_back({first_model + v, 1.0f});
             }
             if (individuals > variations)
@@ -175,11 +192,12 @@ class SceneReader {
     }
 
     Status read_placement(JsonObject& entry) {
-        size_t kind = entry.one_of({"plant", "csv", "scatter", "packed"});
+        const size_t kind = placement_kind(entry);
         COPPICE_CHECK(document_.status());
-        if (kind == 0) return read_single(entry);
-        if (kind == 1) return read_csv(entry);
-        if (kind == 3) return read_packed(entry);
+        if (kind != k_scatter) {
+            COPPICE_TRY(std::vector<Placement> plants, read_fixed(entry, kind));
+            return add(std::move(plants), entry.place_of(k_placement_kinds[kind]));
+        }
         JsonObject object = entry.object("scatter");
         entry.close();
         ScatterSettings settings = read_scatter(object, names_, scene_.terrain.get());
@@ -190,7 +208,40 @@ class SceneReader {
         return add(std::move(plants), entry.place_of("scatter"), rule);
     }
 
-    Status read_single(JsonObject& entry) {
+    static size_t placement_kind(JsonObject& entry) {
+        return entry.one_of({k_placement_kinds[0], k_placement_kinds[1], k_placement_kinds[2], k_placement_kinds[3],
+                             k_placement_kinds[4]});
+    }
+
+    Result<std::vector<Placement>> read_fixed(JsonObject& entry, size_t kind) {
+        if (kind == k_single) return read_single(entry);
+        if (kind == k_csv) return read_csv(entry);
+        if (kind == k_gltf) return read_gltf(entry);
+        return read_packed(entry);
+    }
+
+    // Of what stands before the scatter that is read; and all that is no scatter, wherever it is written, so that what is
+    // planted one by one counts for every rule.
+    Result<std::vector<dvec2>> places_of(const std::string& kind) {
+        std::vector<dvec2> places;
+        auto keep = [&](const std::vector<Placement>& plants) {
+            for (const Placement& plant : plants)
+                if (scene_.models[plant.model.model].name == kind)
+                    places.emplace_back(plant.position_world.x, plant.position_world.z);
+        };
+        for (const PlantGroup& group : file_.groups) keep(group.plants);
+        for (size_t later = next_placement_ + 1; later < placements_.size(); ++later) {
+            const size_t of = placement_kind(placements_[later]);
+            COPPICE_CHECK(document_.status());
+            if (of == k_scatter) continue;
+            // One that cannot be read is reported when its turn comes.
+            if (const auto plants = read_fixed(placements_[later], of)) keep(*plants);
+            COPPICE_CHECK(document_.status());
+        }
+        return places;
+    }
+
+    Result<std::vector<Placement>> read_single(JsonObject& entry) {
         const PlantKind* kind = names_.find_kind(entry, "plant", entry.text("plant"));
         Placement plant;
         const nlohmann::json* at = entry.find("at");
@@ -214,10 +265,10 @@ class SceneReader {
         const PlantIndividual& individual = kind->individuals[variation];
         plant.model = {individual.model, uint32_t(random.next_bits() >> 32)};
         plant.scale *= individual.scale;
-        return add({plant}, entry.place_of("plant"));
+        return std::vector{plant};
     }
 
-    Status read_csv(JsonObject& entry) {
+    Result<std::vector<Placement>> read_csv(JsonObject& entry) {
         CsvSettings settings;
         std::string name = entry.text("csv");
         auto offset = entry.numbers("offset", 2, -2.0 * k_farthest_m, 2.0 * k_farthest_m,
@@ -225,23 +276,43 @@ class SceneReader {
         settings.offset = dvec2(offset[0], offset[1]);
         read_scale_range(entry, settings.scale_low, settings.scale_high);
         settings.seed = entry.whole("seed", 0, UINT64_MAX, 1);
-        settings.kinds = names_.kinds;
+        settings.kinds = read_species(entry);
         settings.terrain = scene_.terrain.get();
-        if (const nlohmann::json* species = entry.find("species")) {
-            JsonObject map = entry.object("species");  // {"name in the file": "plant"}
-            if (!document_.sound()) return document_.status();
-            for (const auto& [alias, ignored] : species->items())
-                if (const PlantKind* kind = names_.find_kind(map, alias.c_str(), map.text(alias.c_str())))
-                    settings.kinds[alias] = *kind;
-        }
         entry.close();
         COPPICE_CHECK(document_.status());
-        COPPICE_TRY(std::vector<Placement> plants, read_placements_csv(resolve(name), settings));
-        return add(std::move(plants), entry.place_of("csv"));
+        return read_placements_csv(resolve(name), settings);
+    }
+
+    // {"name in the file": "plant"}, beside the plants' own names.
+    std::map<std::string, PlantKind> read_species(JsonObject& entry) {
+        std::map<std::string, PlantKind> kinds = names_.kinds;
+        const nlohmann::json* species = entry.find("species");
+        if (!species) return kinds;
+        JsonObject map = entry.object("species");
+        if (!document_.sound()) return kinds;
+        for (const auto& [alias, ignored] : species->items())
+            if (const PlantKind* kind = names_.find_kind(map, alias.c_str(), map.text(alias.c_str())))
+                kinds[alias] = *kind;
+        return kinds;
+    }
+
+    Result<std::vector<Placement>> read_gltf(JsonObject& entry) {
+        const std::string path = resolve(entry.text("gltf"));
+        const auto offset = entry.numbers("offset", 3, -2.0 * k_farthest_m, 2.0 * k_farthest_m,
+                                          std::vector<double>{0.0, 0.0, 0.0});
+        PlaceNamedSettings settings{read_species(entry), dvec3(offset[0], offset[1], offset[2]),
+                                    entry.whole("seed", 0, UINT64_MAX, 1)};
+        entry.close();
+        COPPICE_CHECK(document_.status());
+        if (!settings_.read_gltf)
+            return fail(ErrorId::format_unknown, scene_.path, entry.place_of("gltf"), "glTF files are not read here",
+                        "place these plants by a table or one by one");
+        COPPICE_TRY(const std::vector<NamedPlaces> named, settings_.read_gltf(path));
+        return place_named(named, settings, path);
     }
 
     // On the ground, wherever that has come to lie since they were placed.
-    Status read_packed(JsonObject& entry) {
+    Result<std::vector<Placement>> read_packed(JsonObject& entry) {
         const std::string path = resolve(entry.text("packed"));
         entry.close();
         COPPICE_CHECK(document_.status());
@@ -259,7 +330,7 @@ class SceneReader {
                                           ground_height(terrain, at.x, at.y));
             }
         });
-        return add(std::move(plants), entry.place_of("packed"));
+        return plants;
     }
 
     JsonDocument& document_;
@@ -270,7 +341,10 @@ class SceneReader {
     SceneFile file_;
     Scene& scene_ = file_.scene;
     SceneNames names_;
+    MapPictures pictures_;
     std::vector<Population> populations_;
+    std::vector<JsonObject> placements_;
+    size_t next_placement_ = 0;  // the one that is read
     uint64_t plant_count_ = 0;
 };
 

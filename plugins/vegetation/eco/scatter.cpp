@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include "plugins/shared/noise.h"
+#include "plugins/vegetation/eco/compete.h"
 #include "plugins/vegetation/eco/ground_height.h"
 #include "runtime/core/jobs.h"
 #include "runtime/core/random.h"
@@ -29,14 +30,16 @@ class Ground {
         for (const ScatterSpecies& species : s_.species) total_weight_ += species.weight;
     }
 
-    // chance in [0, 1) thins edges and noise.
+    // chance in [0, 1) thins edges, maps and noise.
     bool admits(dvec2 p, float chance) const {
         double inside = -s_.region.distance_m(p);
         if (!(inside > 0.0)) return false;
         float density = s_.edge_m > 0.0f ? std::min(1.0f, float(inside) / s_.edge_m) : 1.0f;
+        if (s_.map && density > chance) density *= s_.map->share_at(p);
         if (s_.noisy && density > chance) density *= noise_density(p);
         if (!(density > chance)) return false;
         if (!s_.exclude.shapes.empty() && s_.exclude.contains(p)) return false;
+        if (!s_.keeps_distances(p)) return false;
         if (least_up_ > 0.0f && normal_at(p).y < least_up_) return false;
         return s_.rule.takes_height(height_at(p));
     }
@@ -234,7 +237,7 @@ Result<std::vector<Spot>> spots_by_count(const ScatterSettings& s, const Ground&
     }
     return fail(ErrorId::value_out_of_range, file, place + ".count",
                 fmt::format("{} plants do not fit into the region", s.count),
-                "a larger region, fewer exclusions, or a smaller spacing_m");
+                "a larger region, fewer exclusions, a smaller spacing_m, or a brighter density_map");
 }
 
 Result<std::vector<Spot>> spots_on_grid(const ScatterSettings& s, const Ground& ground,
@@ -262,7 +265,34 @@ Result<std::vector<Spot>> spots_on_grid(const ScatterSettings& s, const Ground& 
     return spots;
 }
 
+// In the order they stood in.
+std::vector<Placement> grow_up(const std::vector<Placement>& plants, const Competition& rule) {
+    std::vector<Competitor> competitors;
+    competitors.reserve(plants.size());
+    for (const Placement& plant : plants)
+        competitors.push_back({dvec2(plant.position_world.x, plant.position_world.z),
+                               rule.crown_radius_m * double(plant.scale),
+                               rule.crown_radius_m * std::max(double(plant.scale), rule.scale_most),
+                               uint32_t(competitors.size())});
+    std::vector<Competitor> left = compete(std::move(competitors), rule.steps, rule.growth);
+    std::sort(left.begin(), left.end(), [](const auto& a, const auto& b) { return a.plant < b.plant; });
+    std::vector<Placement> grown;
+    grown.reserve(left.size());
+    for (const Competitor& each : left) {
+        grown.push_back(plants[each.plant]);
+        grown.back().scale = float(each.radius_m / rule.crown_radius_m);
+    }
+    return grown;
+}
+
 }  // namespace
+
+bool ScatterSettings::keeps_distances(dvec2 p) const {
+    for (const DistanceRule& rule : distances)
+        if ((rule.too_near && rule.too_near->contains(p)) || (rule.near_enough && !rule.near_enough->contains(p)))
+            return false;
+    return true;
+}
 
 Result<std::vector<Placement>> scatter(const ScatterSettings& s, const std::string& file,
                                        const std::string& place) {
@@ -280,7 +310,7 @@ Result<std::vector<Placement>> scatter(const ScatterSettings& s, const std::stri
     parallel_for(spots.size(), 4096, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; ++i) plants[i] = ground.plant_at(spots[i]);
     });
-    return plants;
+    return s.competition.crown_radius_m > 0.0 ? grow_up(plants, s.competition) : plants;
 }
 
 }  // namespace coppice

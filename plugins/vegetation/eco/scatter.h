@@ -1,12 +1,15 @@
-// Places plants over a region by density, by number or on a jittered grid, with a least distance, clearings
-// and clumps. A pure function of its settings: every cell of the ground draws from its own seed, so the
+// Places plants over a region by density, by number or on a jittered grid, with a least distance, clearings,
+// clumps, maps of density and distances to what stands there. A pure function of its settings: every cell of the ground draws from its own seed, so the
 // result does not depend on the number of threads.
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 #include "plugins/shared/region.h"
 #include "plugins/terrain/terrain.h"
+#include "plugins/vegetation/eco/density_map.h"
 #include "plugins/vegetation/eco/ground_rule.h"
+#include "plugins/vegetation/eco/near_places.h"
 #include "plugins/vegetation/eco/place.h"
 #include "runtime/core/result.h"
 
@@ -26,6 +29,19 @@ struct DensityNoise {
     uint32_t octaves = 3;
     uint32_t seed = 1;
     double period_m = 0.0;  // the noise repeats after it, for periodic ground; 0: it never does
+};
+
+// How far from some of the plants that stand there; null: any distance will do.
+struct DistanceRule {
+    std::shared_ptr<const NearPlaces> too_near, near_enough;
+};
+
+// What was scattered grows and thins itself (compete.h).
+struct Competition {
+    double crown_radius_m = 0.0;  // at scale 1; 0: none
+    uint32_t steps = 0;
+    double growth = 0.0;      // share a step
+    double scale_most = 1.0;  // nothing grows beyond it
 };
 
 struct ScatterSettings {
@@ -48,8 +64,13 @@ struct ScatterSettings {
     GroundRule rule;
     bool noisy = false;
     DensityNoise noise;
+    std::optional<DensityMap> map;
+    std::vector<DistanceRule> distances;  // all of them hold
+    Competition competition;              // density and count are what it begins with
     uint64_t seed = 1;
     const Terrain* terrain = nullptr;  // null: the plane y = 0
+
+    bool keeps_distances(dvec2 p) const;
 };
 
 // In order of cells. Errors: limit_exceeded (before anything is allocated), value_out_of_range (the count or

@@ -6,6 +6,7 @@
 #include <vector>
 #include "plugins/terrain/terrain.h"
 #include "plugins/vegetation/eco/place.h"
+#include "plugins/vegetation/eco/vary_color.h"
 #include "runtime/core/result.h"
 
 namespace coppice {
@@ -15,6 +16,7 @@ struct SceneModel {
     std::string source_path;  // .glb, .gltf or species .json, resolved against the scene file
     uint64_t variation = 0;   // of a species: which individual
     float importance = 1.0f;  // multiplies the importance of all its parts
+    ColorVariation color_variation = {};
 };
 
 // Plants of one tile: rows [first_plant, first_plant + plant_count) of the arrays in Scene.

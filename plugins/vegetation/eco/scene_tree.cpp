@@ -47,7 +47,7 @@ class TreeReader {
         const bool root = chain_.length() == 1;
         for (const SceneModel& model : node.file.scene.models) {
             auto [found, added] =
-                models_.try_emplace(std::tuple(model.source_path, model.variation, model.importance),
+                models_.try_emplace(std::tuple(model.source_path, model.variation, model.importance, model.color_variation),
                                     uint32_t(tree_.models.size()));
             // The root's plants keep their models, also where two are alike.
             if (added || root) tree_.models.push_back(model);
@@ -126,7 +126,7 @@ class TreeReader {
     SceneTree tree_;
     FileChain chain_;
     std::map<std::string, uint32_t> known_;
-    std::map<std::tuple<std::string, uint64_t, float>, uint32_t> models_;
+    std::map<std::tuple<std::string, uint64_t, float, ColorVariation>, uint32_t> models_;
     uint64_t own_plants_ = 0;
 };
 

@@ -168,7 +168,8 @@ class ForestMaker {
             size_t same = 0;
             while (same < models.size() &&
                    forest_.model_content_hashes[first + same] == populated.model_content_hashes[same] &&
-                   forest_.models[first + same].importance == models[same].importance)
+                   forest_.models[first + same].importance == models[same].importance &&
+                   forest_.models[first + same].color_variation == models[same].color_variation)
                 ++same;
             if (same == models.size()) return uint32_t(first);
         }

@@ -1,5 +1,7 @@
 #include "plugins/vegetation/cook/import/gltf_scene.h"
 
+#include <glm/mat3x3.hpp>
+#include <glm/mat4x4.hpp>
 #include "plugins/vegetation/cook/import/compose_transform.h"
 #include "plugins/vegetation/cook/import/gltf_accessor.h"
 
@@ -135,6 +137,74 @@ Result<std::vector<GltfPlacement>> place_meshes(const GltfDocument& document, co
         }
     }
     return placements;
+}
+
+namespace {
+
+// Of rotations alone, by the largest of its four parts.
+vec4 quaternion_of(const glm::dmat3& m) {
+    const double xx = m[0][0], yy = m[1][1], zz = m[2][2];
+    glm::dvec4 q;
+    if (xx + yy + zz > 0.0)
+        q = glm::dvec4(m[1][2] - m[2][1], m[2][0] - m[0][2], m[0][1] - m[1][0], 1.0 + xx + yy + zz);
+    else if (xx > yy && xx > zz)
+        q = glm::dvec4(1.0 + xx - yy - zz, m[0][1] + m[1][0], m[2][0] + m[0][2], m[1][2] - m[2][1]);
+    else if (yy > zz)
+        q = glm::dvec4(m[0][1] + m[1][0], 1.0 + yy - xx - zz, m[1][2] + m[2][1], m[2][0] - m[0][2]);
+    else
+        q = glm::dvec4(m[2][0] + m[0][2], m[1][2] + m[2][1], 1.0 + zz - xx - yy, m[0][1] - m[1][0]);
+    return vec4(q / std::sqrt(glm::dot(q, q)));
+}
+
+// False where it has no size or is no number. What is sheared keeps its stem.
+bool take_apart(const glm::dmat4& world, NamedPlace& place) {
+    const dvec3 x(world[0]), y(world[1]), z(world[2]);
+    const double volume = std::abs(glm::dot(glm::cross(x, y), z));
+    place.at = dvec3(world[3]);
+    place.scale = std::cbrt(volume);
+    if (!(volume > 0.0 && std::isfinite(place.scale) && std::isfinite(place.at.x + place.at.y + place.at.z)))
+        return false;
+    const dvec3 up = y / glm::length(y);
+    const dvec3 across = x - up * glm::dot(x, up), right = across / glm::length(across);
+    place.turn = quaternion_of(glm::dmat3(right, up, glm::cross(right, up)));
+    return std::isfinite(place.turn.x + place.turn.y + place.turn.z + place.turn.w);
+}
+
+}  // namespace
+
+Result<std::vector<NamedPlaces>> place_nodes(const GltfDocument& document, const GltfBuffers& buffers,
+                                             size_t place_limit) {
+    std::vector<glm::dmat4> world(document.nodes.size(), glm::dmat4(1.0));
+    std::vector<NamedPlaces> all;
+    for (uint32_t root : document.roots) world[root] = glm::dmat4(document.nodes[root].local);
+    for (uint32_t index : order_from(document, document.roots)) {
+        const GltfNode& node = document.nodes[index];
+        for (uint32_t child : node.children) world[child] = world[index] * glm::dmat4(document.nodes[child].local);
+        if (!node.instancing && !node.children.empty()) continue;
+        NamedPlaces named;
+        named.place = place_of(index);
+        if (!node.name.empty()) named.names.push_back(node.name);
+        if (node.mesh != k_gltf_none && !document.meshes[node.mesh].name.empty())
+            named.names.push_back(document.meshes[node.mesh].name);
+        if (named.names.empty()) continue;
+        std::vector<mat4> instances{mat4(1.0f)};
+        if (node.instancing) {
+            COPPICE_TRY(instances, read_instances(document, buffers, index));
+        }
+        if (instances.size() > place_limit)
+            return fail(ErrorId::limit_exceeded, document.file, named.place, "too many nodes and instances",
+                        "fewer in one file");
+        place_limit -= instances.size();
+        named.places.resize(instances.size());
+        for (size_t i = 0; i < instances.size(); ++i)
+            if (!take_apart(world[index] * glm::dmat4(instances[i]), named.places[i]))
+                return fail(ErrorId::value_out_of_range, document.file, named.place,
+                            node.instancing ? "instance " + std::to_string(i) + " has no size or no place"
+                                            : "a transform without a size or a place",
+                            "finite translations, and scales that are not 0");
+        all.push_back(std::move(named));
+    }
+    return all;
 }
 
 }  // namespace coppice

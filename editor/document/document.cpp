@@ -12,7 +12,6 @@ namespace coppice {
 namespace {
 
 constexpr const char* k_ending = ".eco.json";
-constexpr size_t k_kind_limit = 65536;
 
 // "woods.eco.json" -> "woods.plants"
 std::string default_placed_name(const std::string& path) {
@@ -119,7 +118,7 @@ Status Document::read_one(const std::string& path) {
     auto placed_bytes = read_text_file(file.placed_path, k_scene_file_limit_bytes);
     auto placed = placed_bytes ? read_placed(*placed_bytes, file.placed_path)
                                : Result<PlacedPlants>(fail(placed_bytes.error()));
-    if (placed && kinds_.size() + placed->kinds.size() > k_kind_limit)
+    if (placed && !has_room_for_kinds(placed->kinds.size()))
         placed = fail(ErrorId::limit_exceeded, file.placed_path, "",
                       "too many kinds of plants with those before", "at most 65536 in a scene");
     if (!placed) {
@@ -157,7 +156,9 @@ bool Document::apply(const Edit& edit) {
         const SceneTextPtr there = file ? file->text : nullptr;
         const bool text_fits = change.before == change.after || there == change.before ||
                                (there && change.before && there->text == change.before->text);
-        bool fits = text_fits && (change.removed.empty() || (file && file->plants.remove(change.removed)));
+        // A scene without its own file is none.
+        const bool leaves_root = change.before == change.after || change.after || change.path != root_path_;
+        bool fits = text_fits && leaves_root && (change.removed.empty() || (file && file->plants.remove(change.removed)));
         if (!fits) {
             Edit done{"", {edit.files.begin(), edit.files.begin() + ptrdiff_t(f)}};
             apply(inverse(std::move(done)));

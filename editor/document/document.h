@@ -21,6 +21,8 @@ struct EcoFile {
 
 class Document {
   public:
+    static constexpr size_t k_kind_limit = 65536;
+
     // The root must be a JSON object; what else cannot be read is among the faults. Errors: file_*, syntax.
     static Result<Document> open(const std::string& path);
     // One that does not exist yet, with nothing in it.
@@ -41,6 +43,8 @@ class Document {
     // Names are numbered as they are met, and keep their number.
     const std::vector<std::string>& kinds() const { return kinds_; }
     uint16_t kind_of(const std::string& name);
+    // Whether so many more can be numbered.
+    bool has_room_for_kinds(size_t count) const { return kinds_.size() + count <= k_kind_limit; }
 
     // False, and nothing is changed, where the edit is not one of this document as it is.
     bool apply(const Edit& edit);

@@ -56,6 +56,10 @@ Status Session::restore_base(const JournalContent& journal) {
     bool changed = false;
     for (const JournalBase& file : journal.base) {
         if (file.hash == k_no_file) {
+            if (file.path != document_.root_path())
+                return fail(ErrorId::file_corrupt, journal_path(document_.root_path()), "",
+                            "says that " + file.path + " was new; only the scene itself can be",
+                            "the work is kept in the file that ends with .journal.old");
             std::error_code ignored;
             if (!std::filesystem::exists(file.path, ignored)) continue;
             std::filesystem::rename(file.path, file.path + ".bak", ignored);
@@ -102,9 +106,12 @@ Result<size_t> Session::recover() {
     const std::vector<std::string> written = std::exchange(recoverable_, {});
     std::vector<Edit> edits;
     for (const std::string& bytes : written) {
-        auto edit = read_edit(bytes, path, [&](const std::string& name) { return document_.kind_of(name); });
-        if (!edit || !document_.apply(*edit)) break;
-        edits.push_back(std::move(*edit));
+        auto named = read_named_edit(bytes, path);
+        if (!named || !document_.has_room_for_kinds(named->kinds.size())) break;
+        Edit edit =
+            numbered(std::move(*named), [&](const std::string& name) { return document_.kind_of(name); });
+        if (!document_.apply(edit)) break;
+        edits.push_back(std::move(edit));
     }
     // The journal is written again, so that nothing is lost should this run be killed as well.
     for (Edit& edit : edits) {

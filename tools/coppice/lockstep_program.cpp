@@ -74,7 +74,8 @@ Result<std::unique_ptr<LockstepProgram>> LockstepProgram::start(const std::strin
                     "end some others");
     COPPICE_TRY(const std::string line, started->read_line());
     const nlohmann::json ready = nlohmann::json::parse(line, nullptr, false);
-    if (!ready.is_object() || !ready.contains("frames") || !ready["frames"].is_number_unsigned())
+    if (!ready.is_object() || !ready.contains("frames") || !ready["frames"].is_number_unsigned() ||
+        ready["frames"] == 0 || ready["frames"] > UINT32_MAX)
         return fail(ErrorId::format_unknown, program, "", "does not answer as play --lockstep does",
                     "name a coppice program");
     started->frame_count_ = ready["frames"].get<uint32_t>();

@@ -33,7 +33,7 @@ function(coppice_install_package)
           DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/coppice)
   # A prefix may be moved, and is only known when it is installed to.
   file(RELATIVE_PATH pkgconfig_to_prefix /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)
-  foreach(package runtime vegetation-core vegetation)
+  foreach(package c runtime vegetation-core vegetation)
     configure_file(cmake/coppice-${package}.pc.in cmake/coppice-${package}.pc @ONLY)
     install(FILES ${CMAKE_CURRENT_BINARY_DIR}/cmake/coppice-${package}.pc
             DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)

@@ -1,5 +1,6 @@
 // Scenes in scenes: tiles that stand where a reference puts them, and are scenes themselves.
 #include <filesystem>
+#include <set>
 #include <fmt/format.h>
 #include "editor/commands/commands.h"
 #include "editor/commands/target.h"
@@ -69,12 +70,18 @@ std::string read_new_path(const CommandContext& context, JsonObject& arguments, 
     return {};
 }
 
+// Each file once: what was opened may go in circles already.
 bool leads_to(const Document& document, const std::string& from, const std::string& to) {
-    if (from == to) return true;
-    const EcoFile* file = document.find(from);
-    if (!file || !file->text) return false;
-    for (const std::string& path : Document::references_of(from, *file->text))
-        if (leads_to(document, path, to)) return true;
+    std::vector<std::string> open{from};
+    for (std::set<std::string> seen{from}; !open.empty();) {
+        const std::string path = std::move(open.back());
+        open.pop_back();
+        if (path == to) return true;
+        const EcoFile* file = document.find(path);
+        if (!file || !file->text) continue;
+        for (std::string& next : Document::references_of(path, *file->text))
+            if (seen.insert(next).second) open.push_back(std::move(next));
+    }
     return false;
 }
 

@@ -12,7 +12,6 @@ namespace coppice {
 namespace {
 
 constexpr const char* k_ending = ".eco.json";
-constexpr size_t k_kind_limit = 65536;
 
 // "woods.eco.json" -> "woods.plants"
 std::string default_placed_name(const std::string& path) {
@@ -31,6 +30,12 @@ std::string placed_path_of(const std::string& path, const SceneText& text) {
 bool is_there(const std::string& path) {
     std::error_code ignored;
     return std::filesystem::exists(path, ignored);
+}
+
+// None: there is no file, or none that can be read.
+std::optional<uint64_t> hash_of_file(const std::string& path) {
+    const auto bytes = read_text_file(path, k_scene_file_limit_bytes);
+    return bytes ? std::optional(hash_text(*bytes)) : std::nullopt;
 }
 
 // What is there goes beside itself before it is written over.
@@ -131,7 +136,7 @@ Status Document::read_one(const std::string& path) {
     auto placed_bytes = read_text_file(file.placed_path, k_scene_file_limit_bytes);
     auto placed = placed_bytes ? read_placed(*placed_bytes, file.placed_path)
                                : Result<PlacedPlants>(fail(placed_bytes.error()));
-    if (placed && kinds_.size() + placed->kinds.size() > k_kind_limit)
+    if (placed && !has_room_for_kinds(placed->kinds.size()))
         placed = fail(ErrorId::limit_exceeded, file.placed_path, "",
                       "too many kinds of plants with those before", "at most 65536 in a scene");
     if (!placed) {
@@ -169,7 +174,9 @@ bool Document::apply(const Edit& edit) {
         const SceneTextPtr there = file ? file->text : nullptr;
         const bool text_fits = change.before == change.after || there == change.before ||
                                (there && change.before && there->text == change.before->text);
-        bool fits = text_fits && (change.removed.empty() || (file && file->plants.remove(change.removed)));
+        // A scene without its own file is none.
+        const bool leaves_root = change.before == change.after || change.after || change.path != root_path_;
+        bool fits = text_fits && leaves_root && (change.removed.empty() || (file && file->plants.remove(change.removed)));
         if (!fits) {
             Edit done{"", {edit.files.begin(), edit.files.begin() + ptrdiff_t(f)}};
             apply(inverse(std::move(done)));
@@ -217,27 +224,36 @@ bool Document::saved() const {
     return true;
 }
 
-Status Document::save() {
-    struct Write {
-        std::string path, bytes;
-        std::optional<uint64_t>* saved_hash;
-        uint64_t hash;
-    };
+std::vector<Document::Write> Document::list_writes() const {
     std::vector<Write> writes;
-    for (auto& [path, file] : files_)
+    for (const auto& [path, file] : files_)
         if (auto plants = plants_bytes(file))
-            writes.push_back({file.placed_path, std::move(*plants), &file.saved_plants_hash, 0});
-    for (auto& [path, file] : files_)
-        if (auto text = text_bytes(file))
-            writes.push_back({path, std::move(*text), &file.saved_text_hash, 0});
-    std::erase_if(writes, [](Write& write) {
-        write.hash = hash_text(write.bytes);
-        return *write.saved_hash == write.hash;
-    });
+            writes.push_back({file.placed_path, std::move(*plants), file.saved_plants_hash});
+    for (const auto& [path, file] : files_)
+        if (auto text = text_bytes(file)) writes.push_back({path, std::move(*text), file.saved_text_hash});
+    std::erase_if(writes, [](const Write& write) { return write.saved_hash == hash_text(write.bytes); });
+    return writes;
+}
+
+std::vector<std::string> Document::changed_elsewhere() const {
+    std::vector<std::string> changed;
+    for (const Write& write : list_writes())
+        if (hash_of_file(write.path) != write.saved_hash) changed.push_back(write.path);
+    return changed;
+}
+
+Status Document::save(bool overwrite) {
+    if (const std::vector<std::string> changed = changed_elsewhere(); !changed.empty() && !overwrite)
+        return fail(ErrorId::write_failed, changed[0], "", "was changed by another program since it was read",
+                    "overwrite it, which keeps the other one as .bak; or open the scene again");
+    const std::vector<Write> writes = list_writes();
     for (const Write& write : writes) COPPICE_CHECK(back_up(write.path));
     for (const Write& write : writes) {
         COPPICE_CHECK(write_text_file(write.path, write.bytes));
-        *write.saved_hash = write.hash;
+        for (auto& [path, file] : files_) {
+            if (path == write.path) file.saved_text_hash = hash_text(write.bytes);
+            if (file.placed_path == write.path) file.saved_plants_hash = hash_text(write.bytes);
+        }
     }
     // Of files whose making was undone.
     for (auto& [path, file] : files_) {

@@ -22,6 +22,8 @@ struct EcoFile {
 
 class Document {
   public:
+    static constexpr size_t k_kind_limit = 65536;
+
     // The root must be a JSON object; what else cannot be read is among the faults. Errors: file_*, syntax.
     static Result<Document> open(const std::string& path);
     // One that does not exist yet, with nothing in it.
@@ -45,6 +47,8 @@ class Document {
     // Names are numbered as they are met, and keep their number.
     const std::vector<std::string>& kinds() const { return kinds_; }
     uint16_t kind_of(const std::string& name);
+    // Whether so many more can be numbered.
+    bool has_room_for_kinds(size_t count) const { return kinds_.size() + count <= k_kind_limit; }
 
     // False, and nothing is changed, where the edit is not one of this document as it is.
     bool apply(const Edit& edit);
@@ -56,8 +60,11 @@ class Document {
     uint64_t hash() const;
     bool saved() const;
     // Replaces the files that differ from what is on the disk, each whole, after copying what is there to NAME.bak; plants
-    // before the files that name them. Errors: write_failed; what was written before stays, and a later save goes on.
-    Status save();
+    // before the files that name them. Errors: write_failed; what was written before stays, and a later save goes on. Where
+    // another program changed one of them nothing is written, unless they are to be overwritten.
+    Status save(bool overwrite = false);
+    // Files that would be saved, and are not what was read or saved last.
+    std::vector<std::string> changed_elsewhere() const;
 
     // "grove.eco.json" as the file's own folder has it.
     static std::string resolve(const std::string& of_file, const std::string& name);
@@ -65,6 +72,12 @@ class Document {
     static std::vector<std::string> references_of(const std::string& path, const SceneText& text);
 
   private:
+    struct Write {
+        std::string path, bytes;
+        std::optional<uint64_t> saved_hash;  // of what is there, as far as is known
+    };
+    // What is not saved, in the order in which it is written.
+    std::vector<Write> list_writes() const;
     Status read_one(const std::string& path);
 
     std::string root_path_;

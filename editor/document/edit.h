@@ -40,10 +40,17 @@ struct NamedEdit {
     std::vector<std::string> kinds;
 };
 Result<NamedEdit> read_named_edit(std::string_view bytes, const std::string& path);
+template <class KindOf>
+Edit numbered(NamedEdit named, KindOf&& kind_of);
 
 template <class KindOf>
 Result<Edit> read_edit(std::string_view bytes, const std::string& path, KindOf&& kind_of) {
     COPPICE_TRY(NamedEdit named, read_named_edit(bytes, path));
+    return numbered(std::move(named), kind_of);
+}
+
+template <class KindOf>
+Edit numbered(NamedEdit named, KindOf&& kind_of) {
     std::vector<uint16_t> numbers;
     for (const std::string& name : named.kinds) numbers.push_back(kind_of(name));
     for (FileEdit& file : named.edit.files)

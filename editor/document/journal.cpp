@@ -2,10 +2,11 @@
 
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <utility>
 #include <fcntl.h>
-#include <sys/file.h>
 #include <unistd.h>
+#include <fmt/format.h>
 #include "plugins/vegetation/eco/scene_file.h"
 #include "runtime/core/file.h"
 #include "runtime/core/hash.h"
@@ -102,33 +103,74 @@ Result<JournalContent> Journal::read(const std::string& path) {
     journal.base = read_base(content);
     while (take_record(rest, content)) journal.edits.emplace_back(content);
     journal.dropped_bytes = rest.size();
+    journal.whole_bytes = bytes.size() - rest.size();
     return journal;
 }
 
-Status Journal::check_free(const std::string& path) {
-    const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-    const bool busy = file >= 0 && ::flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
-    if (file >= 0) ::close(file);
-    if (!busy) return {};
-    return fail(ErrorId::write_failed, path, "", "another editor has this scene open",
-                "close it there first");
+namespace {
+
+constexpr const char* k_remedy =
+    "work goes on, but would be lost with the program: free space, or save elsewhere";
+
+// So that a name in it outlives the machine.
+void sync_folder_of(const std::string& path) {
+    const std::string folder = std::filesystem::path(path).parent_path().string();
+    const int file = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (file < 0) return;
+    ::fsync(file);
+    ::close(file);
 }
 
-Result<Journal> Journal::create(const std::string& path, const std::vector<JournalBase>& base) {
-    constexpr const char* k_remedy =
-        "work goes on, but would be lost with the program: free space, or save elsewhere";
+}  // namespace
+
+Result<Journal> Journal::create(const std::string& path, const std::vector<JournalBase>& base,
+                                const std::vector<std::string>& edits) {
+    const std::string beside = path + ".new";
+    std::string bytes = std::string(k_mark) + record_of(write_base(base));
+    for (const std::string& edit : edits) bytes += record_of(edit);
     Journal journal;
     journal.path_ = path;
-    journal.file_ = ::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+    journal.file_ = ::open(beside.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
     if (journal.file_ < 0) return failed(path, "cannot open the journal", k_remedy);
-    if (::flock(journal.file_, LOCK_EX | LOCK_NB) != 0)
-        return failed(path, "another editor has this scene open", "close it there first");
-    const std::string head = std::string(k_mark) + record_of(write_base(base));
-    if (::ftruncate(journal.file_, 0) != 0 || !write_all(journal.file_, head) ||
-        ::fdatasync(journal.file_) != 0)
-        return failed(path, "cannot write the journal", k_remedy);
-    journal.size_bytes_ = int64_t(head.size());
+    if (!write_all(journal.file_, bytes) || ::fdatasync(journal.file_) != 0 ||
+        ::rename(beside.c_str(), path.c_str()) != 0) {
+        auto result = failed(path, "cannot write the journal", k_remedy);
+        ::unlink(beside.c_str());
+        return result;
+    }
+    sync_folder_of(path);
+    journal.size_bytes_ = int64_t(bytes.size());
     return journal;
+}
+
+Result<Journal> Journal::resume(const std::string& path, const JournalContent& content) {
+    Journal journal;
+    journal.path_ = path;
+    journal.file_ = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+    journal.size_bytes_ = int64_t(content.whole_bytes);
+    if (journal.file_ < 0 || ::ftruncate(journal.file_, journal.size_bytes_) != 0 ||
+        ::lseek(journal.file_, journal.size_bytes_, SEEK_SET) != journal.size_bytes_)
+        return failed(path, "cannot go on with the journal", k_remedy);
+    return journal;
+}
+
+Result<std::string> keep_old_journal(const std::string& path, bool stays) {
+    for (int n = 1; n < 10000; ++n) {
+        const std::string old = path + (n == 1 ? ".old" : fmt::format(".old.{}", n));
+        // Of two that try at once one finds the name taken.
+        if (::link(path.c_str(), old.c_str()) != 0) {
+            if (errno == EEXIST) continue;
+            // Where there are no links, a name that is free is all there is.
+            std::error_code error;
+            if (std::filesystem::exists(old, error)) continue;
+            std::filesystem::copy_file(path, old, error);
+            if (error) return failed(path, "cannot keep the journal", "free space, then open the scene again");
+        }
+        if (!stays) ::unlink(path.c_str());
+        sync_folder_of(path);
+        return old;
+    }
+    return fail(ErrorId::write_failed, path, "", "there are 10,000 old journals beside it", "delete some");
 }
 
 Status Journal::append(std::string_view edit) {

@@ -19,7 +19,7 @@ inline constexpr uint64_t k_no_file = 0;  // there was none
 struct JournalContent {
     std::vector<JournalBase> base;
     std::vector<std::string> edits;  // write_edit
-    size_t dropped_bytes = 0;        // behind the last whole record
+    size_t whole_bytes = 0, dropped_bytes = 0;  // up to the last whole record, and behind it
 };
 
 class Journal {
@@ -27,15 +27,15 @@ class Journal {
     // Errors: file_missing; format_unknown where not even the base is whole.
     static Result<JournalContent> read(const std::string& path);
 
-    // Whether another program works on it. Errors: write_failed, where one does.
-    static Status check_free(const std::string& path);
-
     Journal() = default;
     Journal(Journal&& other) noexcept;
     Journal& operator=(Journal&& other) noexcept;
     ~Journal();  // closes the file and leaves it
-    // A new one in place of what is there. Errors: write_failed, also where another program has it open.
-    static Result<Journal> create(const std::string& path, const std::vector<JournalBase>& base);
+    // A new one with these edits in place of what is there, which stays until the new one is whole. Errors: write_failed.
+    static Result<Journal> create(const std::string& path, const std::vector<JournalBase>& base,
+                                  const std::vector<std::string>& edits = {});
+    // The one that is there goes on behind its last whole record. Errors: write_failed.
+    static Result<Journal> resume(const std::string& path, const JournalContent& content);
     // It is on the disk when this returns, so that it outlives the machine as well. Errors: write_failed; the record is cut off
     // again as far as that can be done, and later ones may go in.
     Status append(std::string_view edit);
@@ -47,6 +47,9 @@ class Journal {
 };
 
 std::string journal_path(const std::string& scene_path);
+// Puts a journal whose edits are not all done again aside, where nothing is yet: NAME.journal.old, NAME.journal.old.2 ...;
+// also leaves it where it is, if `stays`. The name. Errors: write_failed.
+Result<std::string> keep_old_journal(const std::string& path, bool stays);
 std::vector<JournalBase> journal_base(const Document& document);
 
 }  // namespace coppice

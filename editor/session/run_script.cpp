@@ -64,9 +64,10 @@ Status run_command(Session& session, JsonDocument& script, const std::string& na
     if (name == "undo" || name == "redo") return step_back(arguments, name == "redo", session);
     if (name == "expect") return expect(arguments, session);
     if (name != "save") return export_plants(arguments, name == "export_csv", session);
+    const bool overwrite = arguments.truth("overwrite", false);
     arguments.close();
     COPPICE_CHECK(script.status());
-    return session.save();
+    return session.save(overwrite);
 }
 
 }  // namespace

@@ -40,8 +40,14 @@ void remove_file(const std::string& path) {
 }  // namespace
 
 Result<std::unique_ptr<Session>> Session::open(const std::string& path, const Settings& settings) {
+    // Before anything is read: what is read is then what stays.
+    SceneLock lock;
+    if (settings.journal) {
+        COPPICE_TRY(lock, SceneLock::take(path));
+    }
     COPPICE_TRY(Document document, open_document(path));
     std::unique_ptr<Session> session(new Session(std::move(document)));
+    session->lock_ = std::move(lock);
     session->settings_ = settings;
     session->path_ = path;
     session->pictures_ = MapPictures(settings.find_images);
@@ -49,14 +55,11 @@ Result<std::unique_ptr<Session>> Session::open(const std::string& path, const Se
     const std::string journal = journal_path(session->document_.root_path());
     std::error_code ignored;
     if (settings.journal && std::filesystem::exists(journal, ignored)) {
-        COPPICE_CHECK(Journal::check_free(journal));
         auto content = Journal::read(journal);
-        if (!content) {
+        if (content)
+            session->recoverable_ = std::move(*content);
+        else
             session->warnings_.push_back(content.error());
-        } else {
-            session->recoverable_ = std::move(content->edits);
-            session->recoverable_base_ = std::move(content->base);
-        }
     }
     session->load_terrain();
     return session;
@@ -72,6 +75,10 @@ Status Session::restore_base(const JournalContent& journal) {
     bool changed = false;
     for (const JournalBase& file : journal.base) {
         if (file.hash == k_no_file) {
+            if (file.path != document_.root_path())
+                return fail(ErrorId::file_corrupt, journal_path(document_.root_path()), "",
+                            "says that " + file.path + " was new; only the scene itself can be",
+                            "the work is kept in the file that ends with .journal.old");
             std::error_code ignored;
             if (!std::filesystem::exists(file.path, ignored)) continue;
             std::filesystem::rename(file.path, file.path + ".bak", ignored);
@@ -103,35 +110,51 @@ Status Session::restore_base(const JournalContent& journal) {
 
 Result<size_t> Session::recover() {
     const std::string path = journal_path(document_.root_path());
-    if (Status restored = restore_base({recoverable_base_, {}, 0}); !restored) {
-        recoverable_.clear();
-        std::error_code ignored;
-        std::filesystem::rename(path, path + ".old", ignored);
+    const JournalContent journal = std::exchange(recoverable_, {});
+    if (Status restored = restore_base(journal); !restored) {
+        COPPICE_CHECK(keep_old_journal(path, false));
         return fail(std::move(restored.error()));
     }
-    const std::vector<std::string> written = std::exchange(recoverable_, {});
     std::vector<Edit> edits;
-    for (const std::string& bytes : written) {
-        auto edit = read_edit(bytes, path, [&](const std::string& name) { return document_.kind_of(name); });
-        if (!edit) break;
+    for (const std::string& bytes : journal.edits) {
+        auto named = read_named_edit(bytes, path);
+        if (!named || !document_.has_room_for_kinds(named->kinds.size())) break;
+        Edit edit =
+            numbered(std::move(*named), [&](const std::string& name) { return document_.kind_of(name); });
         // What is read only when it is edited.
-        for (const FileEdit& file : edit->files)
+        for (const FileEdit& file : edit.files)
             if (file.before && !document_.find(file.path)) (void)document_.read(file.path);
-        if (!document_.apply(*edit)) break;
-        edits.push_back(std::move(*edit));
+        if (!document_.apply(edit)) break;
+        edits.push_back(std::move(edit));
     }
-    // The journal is written again, so that nothing is lost should this run be killed as well.
-    for (Edit& edit : edits) {
-        write_journal(edit);
-        remember(std::move(edit));
+    // The same journal goes on. Where not all of it holds, all of it is kept first, and one with what holds takes its place.
+    const bool all = edits.size() == journal.edits.size();
+    Result<Journal> made = Journal();
+    if (!all) {
+        if (auto kept = keep_old_journal(path, true)) {
+            made = Journal::create(path, journal.base, {journal.edits.begin(), journal.edits.begin() + ptrdiff_t(edits.size())});
+        } else {
+            made = fail(kept.error());
+        }
+    } else {
+        made = Journal::resume(path, journal);
     }
+    if (made) {
+        journal_ = std::move(*made);
+        has_journal_ = true;
+    } else {
+        // It stays as it is; what is done from now on goes into no journal until there is room for one with everything.
+        warnings_.push_back(made.error());
+        unwritten_.assign(journal.edits.begin(), journal.edits.begin() + ptrdiff_t(edits.size()));
+    }
+    for (Edit& edit : edits) remember(std::move(edit));
     ++text_version_;
     load_terrain();
     return edits.size();
 }
 
 Status Session::discard_recovery() {
-    recoverable_.clear();
+    recoverable_ = {};
     remove_file(journal_path(document_.root_path()));
     return {};
 }
@@ -173,10 +196,12 @@ void Session::write_journal(const Edit& edit) {
     if (!settings_.journal) return;
     unwritten_.push_back(write_edit(edit, document_.kinds()));
     if (!has_journal_) {
-        auto made = Journal::create(journal_path(document_.root_path()), journal_base(document_));
+        auto made = Journal::create(journal_path(document_.root_path()), journal_base(document_),
+                                    {unwritten_.begin(), unwritten_.end()});
         if (!made) return warnings_.push_back(made.error());
         journal_ = std::move(*made);
         has_journal_ = true;
+        unwritten_.clear();
     }
     while (!unwritten_.empty()) {
         if (Status written = journal_.append(unwritten_.front()); !written)
@@ -194,7 +219,7 @@ Result<const Edit*> Session::perform(const std::string& name, const nlohmann::js
 }
 
 void Session::perform(Edit edit) {
-    assert(recoverable_.empty() && open_edit_.empty());
+    assert(recoverable_.edits.empty() && open_edit_.empty());
     if (edit.empty()) return;
     apply(edit);
     write_journal(edit);
@@ -247,8 +272,8 @@ std::string Session::redo() {
     return edit->name;
 }
 
-Status Session::save() {
-    COPPICE_CHECK(document_.save());
+Status Session::save(bool overwrite) {
+    COPPICE_CHECK(document_.save(overwrite));
     saved_step_name_ = step_name();
     // What follows is of the files as they are now.
     drop_journal();

@@ -8,6 +8,7 @@
 #include "editor/commands/command.h"
 #include "editor/document/history.h"
 #include "editor/document/journal.h"
+#include "editor/session/scene_lock.h"
 
 namespace coppice {
 
@@ -24,9 +25,10 @@ class Session {
     ~Session();
 
     // Edits that an earlier run left unsaved; 0: none. They are kept until recovered or discarded, and nothing is done before.
-    size_t recoverable_count() const { return recoverable_.size(); }
-    // Does again what holds; how many edits. Errors: file_corrupt where the scene is not the one they were made of: then none
-    // is done, and the journal is kept as NAME.journal.old.
+    size_t recoverable_count() const { return recoverable_.edits.size(); }
+    // Does again what holds; how many edits. The journal goes on; where not all edits hold, it is kept as NAME.journal.old as
+    // well. Errors: file_corrupt where the scene is not the one they were made of: then none is done, and the journal is kept
+    // so.
     Result<size_t> recover();
     Status discard_recovery();
 
@@ -42,7 +44,8 @@ class Session {
     // The name of what was undone or done again; empty: there is none.
     std::string undo();
     std::string redo();
-    Status save();
+    // Errors: write_failed, also where another program wrote what would be replaced, unless it is to be overwritten.
+    Status save(bool overwrite = false);
     // What is not saved is not wanted: nothing of it is left for a later run.
     void drop_journal();
     // Whether there is nothing to lose.
@@ -72,6 +75,7 @@ class Session {
     Status restore_base(const JournalContent& journal);
 
     Settings settings_;
+    SceneLock lock_;
     std::string path_;
     Document document_;
     MapPictures pictures_;
@@ -80,8 +84,7 @@ class Session {
     Journal journal_;
     bool has_journal_ = false;
     std::deque<std::string> unwritten_;  // edits that the journal had no room for
-    std::vector<std::string> recoverable_;
-    std::vector<JournalBase> recoverable_base_;
+    JournalContent recoverable_;
     std::shared_ptr<Terrain> terrain_;
     std::string terrain_text_;
     std::vector<Error> warnings_;

@@ -57,21 +57,26 @@ Result<std::unique_ptr<EditorView>> EditorView::create(Registry& registry, Sessi
 
 Status EditorView::follow(Session& session) {
     Document& document = session.changing_document();
-    std::set<PlantCell> changed = document.root().plants.take_changed();
+    unshown_.merge(document.root().plants.take_changed());
     // Strokes change plants alone, and what a base scene consists of takes time to look at.
     if (const uint64_t edits = session.text_version(); !shown_ || edits != edit_hash_) {
         edit_hash_ = edits;
         if (const uint64_t hash = hash_base(document); !shown_ || hash != base_hash_) {
             base_hash_ = hash;
             COPPICE_CHECK(show_base(session));
-            changed.clear();
-            for (const auto& [cell, plants] : document.root().plants.cells()) changed.insert(cell);
+            unshown_.clear();
+            for (const auto& [cell, plants] : document.root().plants.cells()) unshown_.insert(cell);
         }
     }
     const auto clock = std::chrono::steady_clock::now();
-    for (const PlantCell& cell : changed) COPPICE_CHECK(show_cell(session, cell));
+    Status first_fault;
+    std::erase_if(unshown_, [&](const PlantCell& cell) {
+        Status shown = show_cell(session, cell);
+        if (!shown && first_fault) first_fault = shown;
+        return shown.has_value();
+    });
     times_.loose_ms = ms_since(clock);
-    return {};
+    return first_fault;
 }
 
 Status EditorView::show_base(const Session& session) {

@@ -26,7 +26,7 @@ class EditorView {
     ~EditorView();
 
     // Shows what the document has become since the last call. Errors: those of a scene of which nothing loads; what was shown
-    // stays then, and it is tried again when it has changed.
+    // stays then, and it is tried again when it has changed. Of plants that find no room: these are tried again each time.
     Status follow(Session& session);
 
     // Runs the systems and records the passes; the caller submits.
@@ -77,6 +77,7 @@ class EditorView {
     std::vector<Error> faults_;
     uint64_t base_hash_ = 0, edit_hash_ = 0;
     bool shown_ = false;
+    std::set<PlantCell> unshown_;  // changed since they were shown, or never
     uint32_t last_slot_ = 0;
     Times times_;
 };

@@ -217,6 +217,8 @@ class EditorWindow {
 
     void save() {
         tools_.stop(session_);
+        state_.overwriting = !session_.document().changed_elsewhere().empty();
+        if (state_.overwriting) return;
         const Status saved = session_.save();
         state_.note = saved ? "saved" : to_string(saved.error());
     }
@@ -231,7 +233,7 @@ class EditorWindow {
     void handle_keys() {
         confirmed_ = cancelled_ = false;
         scale_by_ = 1.0f;
-        const bool elsewhere = ImGui::GetIO().WantTextInput || state_.closing || state_.recovering;
+        const bool elsewhere = ImGui::GetIO().WantTextInput || state_.is_asking();
         for (const KeyPress& press : std::exchange(presses_, {}))
             if (!elsewhere) handle_key(press);
     }
@@ -332,7 +334,7 @@ class EditorWindow {
     }
 
     void handle_pointer(ViewSize size) {
-        const bool blocked = state_.closing || state_.recovering;
+        const bool blocked = state_.is_asking();
         const bool in_view = !ImGui::GetIO().WantCaptureMouse && !blocked;
         for (const PointerEvent& event : std::exchange(pointer_, {})) {
             Gesture gesture;

@@ -396,10 +396,28 @@ void draw_questions(Session& session, PanelState& state) {
         }
         ImGui::EndPopup();
     }
-    if (state.closing && begin("Not saved")) {
+    if (state.overwriting && begin("Changed by another program")) {
+        text("Since they were read here, another program wrote:");
+        for (const std::string& file : session.document().changed_elsewhere()) text("  " + file);
+        text("What is there is kept as .bak.");
+        if (ImGui::Button("Overwrite")) {
+            const Status saved = session.save(true);
+            state.note = saved ? "saved" : to_string(saved.error());
+            state.overwriting = false;
+            ImGui::CloseCurrentPopup();
+        }
+        ImGui::SameLine();
+        if (ImGui::Button("Do not save")) {
+            state.overwriting = false;
+            ImGui::CloseCurrentPopup();
+        }
+        ImGui::EndPopup();
+    }
+    if (state.closing && !state.overwriting && begin("Not saved")) {
         text("There are changes that are not saved.");
         if (!state.note.empty()) wrapped(state.note);
         if (ImGui::Button("Save and close")) {
+            state.overwriting = !session.document().changed_elsewhere().empty();
             if (Status saved = session.save(); saved)
                 state.closed = true;
             else

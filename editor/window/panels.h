@@ -13,8 +13,10 @@ struct PanelState {
     float target_ms = 33.0f;  // that a moving view's frames may take
     bool wants_save = false, wants_close = false, wants_scale = false;
     bool closing = false;  // the question is asked
+    bool overwriting = false;  // likewise: what is to be saved over was changed by another program
     bool closed = false;
     bool recovering = false;  // likewise, at the start
+    bool is_asking() const { return closing || overwriting || recovering; }
     std::string wants_plant;  // the population whose plant view is asked for
     bool wants_scene = false;
     int tried_part = -1;  // of a plant, whose importance is being dragged

@@ -246,6 +246,7 @@ void draw_plant_panels(Session& session, PlantEditor& plant, PanelState& state) 
     draw_figures(plant, state.scale);
     ImGui::End();
 
+    draw_questions(session, state);
     if (plant.stage().is_empty()) return;
     const FreeColumns free = plant_free_columns(state.scale);
     const float middle_px = 0.5f * (free.low_px + free.high_px), quarter_px = 0.24f * (free.high_px - free.low_px);
@@ -254,7 +255,6 @@ void draw_plant_panels(Session& session, PlantEditor& plant, PanelState& state) 
                               : fmt::format("as at {:.0f} px, {:.1f} times as large", plant.view.height_px,
                                             plant.stage().sample_distance_px()),
           middle_px + quarter_px, size.y - bar_px);
-    draw_questions(session, state);
 }
 
 }  // namespace coppice

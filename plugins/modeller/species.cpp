@@ -6,6 +6,7 @@
 
 #include "plugins/modeller/leaf_shapes.h"
 #include "plugins/modeller/read_json.h"
+#include "plugins/shared/json_depth.h"
 
 namespace coppice::modeller {
 namespace {
@@ -233,6 +234,9 @@ void read_flower(JsonReader& in, FlowerParameters& flower) {
 }
 
 Result<nlohmann::json> parse_json(std::string_view text, const std::string& file) {
+    if (const auto byte = byte_nested_deeper(text))
+        return fail(ErrorId::limit_exceeded, file, fmt::format("byte {}", *byte),
+                    fmt::format("JSON nested deeper than {} levels", k_json_depth_limit), "a flatter file");
     try {
         return nlohmann::json::parse(text.begin(), text.end());
     } catch (const nlohmann::json::parse_error& error) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include "plugins/shared/json_depth.h"
 
 namespace coppice {
 namespace {
@@ -61,6 +62,9 @@ std::string known_names(std::string_view name, std::vector<std::string> known) {
 Result<JsonDocument> JsonDocument::parse(std::string_view text, const std::string& file) {
     JsonDocument document;
     document.file_ = file;
+    if (const auto byte = byte_nested_deeper(text))
+        return fail(ErrorId::limit_exceeded, file, fmt::format("byte {}", *byte),
+                    fmt::format("JSON nested deeper than {} levels", k_json_depth_limit), "a flatter file");
     try {
         document.root_ = nlohmann::json::parse(text);
     } catch (const nlohmann::json::parse_error& error) {

@@ -14,7 +14,7 @@ namespace coppice {
 
 class JsonDocument {
   public:
-    // Errors: syntax, with line and column.
+    // Errors: syntax, with line and column; limit_exceeded where it nests deeper than k_json_depth_limit.
     static Result<JsonDocument> parse(std::string_view text, const std::string& file);
 
     const nlohmann::json& root() const { return root_; }

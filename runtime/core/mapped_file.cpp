@@ -2,32 +2,22 @@
 
 #include <cerrno>
 #include <cstring>
-#include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 #include <utility>
+#include "runtime/core/file_source.h"
 #include "runtime/core/file_watcher.h"
 
 namespace coppice {
 
 Result<MappedFile> MappedFile::open(const std::string& path) {
-    // Not blocking, so that a pipe is refused below instead of waited for.
-    int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-    if (fd < 0) {
-        if (errno == ENOENT || errno == ENOTDIR)
-            return fail(ErrorId::file_missing, path, "", "no such file", "check the path");
-        return fail(ErrorId::file_unreadable, path, "", std::strerror(errno), "check the permissions");
-    }
+    COPPICE_TRY(const int fd, open_to_read(path));
     struct stat info {};
     if (::fstat(fd, &info) != 0) {
         const int stat_errno = errno;
         ::close(fd);
         return fail(ErrorId::file_unreadable, path, "", std::strerror(stat_errno), "check the disk");
-    }
-    if (!S_ISREG(info.st_mode)) {
-        ::close(fd);
-        return fail(ErrorId::file_missing, path, "", "not a regular file", "name a file");
     }
     MappedFile file;
     if (info.st_size > 0) {

@@ -2,10 +2,10 @@
 
 #include <cerrno>
 #include <cstring>
-#include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 #include <utility>
+#include "runtime/core/file_source.h"
 #include "runtime/core/file_watcher.h"
 
 namespace coppice {
@@ -13,18 +13,10 @@ namespace coppice {
 Result<OpenFile> OpenFile::open(const std::string& path) {
     OpenFile file;
     file.path_ = path;
-    // Not blocking, so that a pipe is refused below instead of waited for.
-    file.descriptor_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-    if (file.descriptor_ < 0) {
-        if (errno == ENOENT || errno == ENOTDIR)
-            return fail(ErrorId::file_missing, path, "", "no such file", "check the path");
-        return fail(ErrorId::file_unreadable, path, "", std::strerror(errno), "check the permissions");
-    }
+    COPPICE_TRY(file.descriptor_, open_to_read(path));
     struct stat info {};
     if (::fstat(file.descriptor_, &info) != 0)
         return fail(ErrorId::file_unreadable, path, "", std::strerror(errno), "check the disk");
-    if (!S_ISREG(info.st_mode))
-        return fail(ErrorId::file_missing, path, "", "not a regular file", "name a file");
     file.size_bytes_ = uint64_t(info.st_size);
     tell_file_watcher(path);
     return file;

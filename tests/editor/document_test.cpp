@@ -190,5 +190,43 @@ TEST(PlantSets, FindWhatTheyHoldAndNothingElse) {
     EXPECT_TRUE(set.cells().empty());
 }
 
+TEST_F(Documents, OneEditorAtATimeHasAScene) {
+    auto first = open();
+    ASSERT_TRUE(first);
+    auto second = Session::open(path, {&k_test_terrain});
+    ASSERT_FALSE(second);
+    EXPECT_EQ(second.error().id, ErrorId::write_failed);
+    EXPECT_NE(to_string(second.error()).find("another editor"), std::string::npos);
+    first.reset();
+    EXPECT_FALSE(std::filesystem::exists(path + ".lock"));
+    // What a program left that was killed holds nobody out.
+    ASSERT_TRUE(write_text_file(path + ".lock", ""));
+    EXPECT_TRUE(open());
+}
+
+TEST_F(Documents, WhatAnotherProgramWroteIsNotSavedOver) {
+    auto session = open();
+    perform(*session, "place", R"({"population": "oak", "at": [0, 0]})");
+    const std::string theirs = std::string(k_workplace_scene) + "\n";
+    ASSERT_TRUE(write_text_file(path, theirs));
+    EXPECT_EQ(session->document().changed_elsewhere(), std::vector<std::string>{path});
+    const Status refused = session->save();
+    ASSERT_FALSE(refused);
+    EXPECT_NE(to_string(refused.error()).find("another program"), std::string::npos);
+    EXPECT_EQ(read("scene.eco.json"), theirs);
+    EXPECT_FALSE(std::filesystem::exists(folder + "/scene.plants"));
+    EXPECT_FALSE(session->saved());
+    ASSERT_TRUE(session->save(true));
+    EXPECT_EQ(read("scene.eco.json.bak"), theirs);
+    EXPECT_TRUE(session->saved());
+    EXPECT_TRUE(session->document().changed_elsewhere().empty());
+    // Also a file that came where there was none, and one that is gone.
+    std::filesystem::remove(path);
+    perform(*session, "set_population", R"({"name": "oak", "importance": 3})");
+    EXPECT_FALSE(session->save());
+    ASSERT_TRUE(session->save(true));
+    EXPECT_EQ(count(*session, "oak"), 1u);
+}
+
 }  // namespace
 }  // namespace coppice

@@ -1,4 +1,6 @@
 // What a program that was killed leaves behind.
+#include <csignal>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 #include "tests/editor/workplace.h"
@@ -173,6 +175,64 @@ TEST_F(Recovery, LeavesAloneWhatAnotherProgramChanged) {
     EXPECT_TRUE(std::filesystem::exists(path + ".journal.old"));
     EXPECT_FALSE(std::filesystem::exists(path + ".journal"));
     perform(*session, "add_population", R"({"name": "oak", "source": "oak.json"})");
+}
+
+// One step of another scene in the middle: what stands before it is done again, and all of them are kept.
+TEST_F(Recovery, KeepsStepsThatDoNotFit) {
+    const std::vector<uint64_t> hashes = work_and_be_killed();
+    const std::string journal_file = path + ".journal";
+    auto content = Journal::read(journal_file);
+    ASSERT_TRUE(content);
+    std::vector<std::string> edits = content->edits;
+    edits.erase(edits.begin() + 2);  // which the next one builds on
+    for (const char* old : {".old", ".old.2"}) {
+        ASSERT_TRUE(Journal::create(journal_file, content->base, edits));
+        const std::string all = read("scene.eco.json.journal");
+        auto session = open();
+        ASSERT_EQ(session->recoverable_count(), 5u);
+        auto recovered = session->recover();
+        ASSERT_TRUE(recovered);
+        EXPECT_EQ(*recovered, 2u);
+        EXPECT_EQ(session->document().hash(), hashes[2]);
+        EXPECT_EQ(read(std::string("scene.eco.json.journal") + old), all);
+        EXPECT_EQ(Journal::read(journal_file)->edits.size(), 2u);
+        perform(*session, "place", R"({"population": "birch", "at": [1, 1]})");
+        EXPECT_EQ(Journal::read(journal_file)->edits.size(), 3u);
+        session->drop_journal();
+    }
+}
+
+// Where nothing more can be written no step is lost: the old journal stays until one with everything has room.
+TEST_F(Recovery, LosesNothingOnAFullDisk) {
+    const std::vector<uint64_t> hashes = work_and_be_killed();
+    const std::string journal_file = path + ".journal";
+    auto content = Journal::read(journal_file);
+    ASSERT_TRUE(content);
+    std::vector<std::string> edits = content->edits;
+    edits.push_back("no edit");
+    ASSERT_TRUE(Journal::create(journal_file, content->base, edits));
+    const std::string before = read("scene.eco.json.journal");
+    auto session = open();
+    rlimit unlimited{};
+    ::getrlimit(RLIMIT_FSIZE, &unlimited);
+    const auto ignored = ::signal(SIGXFSZ, SIG_IGN);
+    const rlimit full{16, unlimited.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &full);
+    auto recovered = session->recover();
+    ::setrlimit(RLIMIT_FSIZE, &unlimited);
+    ::signal(SIGXFSZ, ignored);
+    ASSERT_TRUE(recovered);
+    EXPECT_EQ(*recovered, 6u);
+    EXPECT_FALSE(session->take_warnings().empty());
+    EXPECT_EQ(read("scene.eco.json.journal"), before);
+    EXPECT_FALSE(std::filesystem::exists(journal_file + ".new"));
+    perform(*session, "place", R"({"population": "oak", "at": [3, 3]})");
+    EXPECT_EQ(Journal::read(journal_file)->edits.size(), 7u);
+    const uint64_t hash = session->document().hash();
+    session.reset();
+    session = open();
+    ASSERT_TRUE(session->recover());
+    EXPECT_EQ(session->document().hash(), hash);
 }
 
 TEST_F(Recovery, MayBeDeclined) {

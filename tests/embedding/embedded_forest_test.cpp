@@ -4,9 +4,13 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
+#include <mutex>
+#include <set>
 #include <unistd.h>
 #include <gtest/gtest.h>
 #include "runtime/core/file.h"
+#include "runtime/core/file_source.h"
 #include "runtime/gpu/buffer.h"
 #include "runtime/gpu/commands.h"
 
@@ -132,6 +136,52 @@ TEST_F(EmbeddedForestTest, ShadowsFollow) {
     EXPECT_GT(forest->report().shadow_plants, 0u);
     ASSERT_TRUE(ring.submit());
     ASSERT_TRUE(ring.wait(frame->serial));
+}
+
+// A scene that lies in a host's archive, and nowhere on the disk.
+TEST_F(EmbeddedForestTest, FilesMayComeFromTheHost) {
+    const Pixels from_disk = draw();
+    struct Archive {
+        std::map<std::string, std::string> files;
+        std::mutex mutex;
+        std::set<std::string> asked;
+    } archive;
+    for (const char* name : {"clearing.eco.json", "fern.json", "birch.json"}) {
+        auto text = read_text_file(folder + "/" + name);
+        ASSERT_TRUE(text);
+        archive.files[std::string("archive:/clearing/") + name] = std::move(*text);
+    }
+    set_file_source(
+        [](void* context, const std::string& path) -> Result<std::vector<std::byte>> {
+            auto& of = *static_cast<Archive*>(context);
+            std::lock_guard lock(of.mutex);
+            of.asked.insert(path);
+            const auto found = of.files.find(path);
+            if (found == of.files.end()) return fail(ErrorId::file_missing, path, "", "not in the archive", "add it");
+            const auto bytes = std::as_bytes(std::span(found->second));
+            return std::vector<std::byte>(bytes.begin(), bytes.end());
+        },
+        &archive);
+    device->wait_idle();
+    forest.reset();
+    EmbeddedForestSettings settings;
+    settings.device = {device->instance, device->physical, device->handle};
+    settings.device.queue_family = device->queue_family;
+    settings.scene = "archive:/clearing/clearing.eco.json";
+    settings.cache_dir = testing::TempDir() + "embedded_forest_cache_of_archive";
+    std::filesystem::remove_all(settings.cache_dir);
+    settings.width = k_width;
+    settings.height = k_height;
+    auto created = EmbeddedForest::create(settings);
+    settings.scene = "archive:/clearing/none.eco.json";
+    const auto missing = EmbeddedForest::create(settings);
+    set_file_source(nullptr, nullptr);
+    ASSERT_TRUE(created) << to_string(created.error());
+    ASSERT_FALSE(missing);
+    EXPECT_EQ(missing.error().id, ErrorId::file_missing);
+    forest = std::move(*created);
+    for (const auto& [path, text] : archive.files) EXPECT_TRUE(archive.asked.contains(path)) << path;
+    EXPECT_EQ(differing(from_disk, draw(), 0, k_width), 0u);
 }
 
 TEST_F(EmbeddedForestTest, StemsFollow) {

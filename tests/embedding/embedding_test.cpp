@@ -136,6 +136,47 @@ TEST_F(Embedding, VulkanHostFindsThePackageAndItsBoardsStandAmongPlants) {
     }
 }
 
+TEST_F(Embedding, AHostInCDrawsWhatOneInCppDraws) {
+    const std::string prefix = install(), of_prefix = " -DCMAKE_PREFIX_PATH='" + prefix + "'",
+                      scene = " '" + k_embedding + "/ferns.eco.json' ", cmake = COPPICE_CMAKE;
+    const ShellResult built = run(
+        folder,
+        cmake + " -S '" + k_embedding + "/vulkan_host' -B cpp -G Ninja" + of_prefix + k_compiler + "&& " + cmake +
+            " --build cpp && " + cmake + " -S '" + k_embedding + "/c_host' -B c -G Ninja" + of_prefix + " && " +
+            cmake + " --build c && " + cmake + " -S '" + k_embedding + "/c_host' -B older -G Ninja" + of_prefix +
+            " -DOLDER_HEADER='" + k_embedding + "/older/coppice.h' && " + cmake + " --build older");
+    ASSERT_EQ(built.exit_code, 0) << built.said;
+    ASSERT_EQ(run(folder, "cpp/vulkan_host" + scene + "cpp.ppm 1").exit_code, 0);
+    const ShellResult drawn = run(folder, "c/c_host" + scene + "c.ppm");
+    ASSERT_EQ(drawn.exit_code, 0) << drawn.said;
+    EXPECT_NE(drawn.said.find("plants 600 models 1 "), std::string::npos) << drawn.said;
+    EXPECT_NE(drawn.said.find("removed twice: 2 "), std::string::npos) << drawn.said;
+
+    // The same but for the boards, and for what a camera's angles are rounded to.
+    const Ppm cpp = read_ppm(folder + "/cpp.ppm"), c = read_ppm(folder + "/c.ppm");
+    ASSERT_EQ(c.rgb.size(), cpp.rgb.size());
+    int plants = 0, different = 0, compared = 0;
+    for (int y = 0; y < c.height; ++y)
+        for (int x = 0; x < c.width; ++x) {
+            const auto a = c.at(x, y), b = cpp.at(x, y);
+            if (b[0] == 255 && b[2] == 255) continue;  // a board
+            ++compared;
+            plants += a != std::array<int, 3>{102, 153, 204};
+            different += std::abs(a[0] - b[0]) + std::abs(a[1] - b[1]) + std::abs(a[2] - b[2]) > 24;
+        }
+    EXPECT_GT(plants, compared / 10);
+    EXPECT_LT(different, compared / 100);
+
+    const ShellResult older = run(folder, "older/c_host" + scene + "older.ppm");
+    ASSERT_EQ(older.exit_code, 0) << older.said;
+    EXPECT_EQ(older.said, drawn.said);
+    EXPECT_EQ(read_ppm(folder + "/older.ppm").rgb, c.rgb);
+
+    const ShellResult nowhere = run(folder, "c/c_host nowhere.eco.json none.ppm");
+    EXPECT_EQ(nowhere.exit_code, 2);
+    EXPECT_NE(nowhere.said.find("nowhere.eco.json: no such file"), std::string::npos) << nowhere.said;
+}
+
 TEST_F(Embedding, EntityHostNeedsOnlyPkgConfigAndNoVulkan) {
     const std::string prefix = install();
     const ShellResult built = run(

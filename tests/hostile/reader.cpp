@@ -26,6 +26,12 @@ const std::vector<Reader>& readers() {
         {"pnm", false, read_pnm, pnm_seeds, nullptr},
         {"pfm", false, read_pfm, pfm_seeds, nullptr},
         {"png", false, read_png, png_seeds, nullptr},
+        {"edited_scene", true, read_edited_scene, edited_scene_seeds, nullptr},
+        {"edited_plants", false, read_edited_plants, edited_plants_seeds, seal_placed},
+        {"journal", false, read_journal, journal_seeds, seal_journal},
+        {"script", true, read_script, script_seeds, nullptr},
+        {"flight_summary", true, read_flight_summary, flight_summary_seeds, nullptr},
+        {"flight_frames", true, read_flight_frames, flight_frames_seeds, nullptr},
     };
     return k_readers;
 }

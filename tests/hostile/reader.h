@@ -42,5 +42,13 @@ bool read_gltf_places(std::span<const std::byte> bytes);
 bool read_pnm(std::span<const std::byte> bytes);
 bool read_pfm(std::span<const std::byte> bytes);
 bool read_png(std::span<const std::byte> bytes);  // and JPEG, by the images plugin where it is there
+// readers_editor.cpp
+bool read_edited_scene(std::span<const std::byte> bytes);   // *.eco.json, opened, worked on, undone
+bool read_edited_plants(std::span<const std::byte> bytes);  // placed plants beside one
+bool read_journal(std::span<const std::byte> bytes);        // read and recovered
+bool read_script(std::span<const std::byte> bytes);         // run, but for commands that write files
+// readers_flights.cpp
+bool read_flight_summary(std::span<const std::byte> bytes);  // summary.json that play --out left
+bool read_flight_frames(std::span<const std::byte> bytes);   // frames.csv likewise
 
 }  // namespace coppice::hostile

@@ -1,10 +1,7 @@
 #include <cmath>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <memory>
 #include <string>
-#include <unistd.h>
 #include "plugins/images/images.h"
 #include "plugins/modeller/grow.h"
 #include "plugins/modeller/species.h"
@@ -25,44 +22,13 @@
 #include "runtime/plugin/registry.h"
 #include "tests/hostile/reader.h"
 #include "tests/hostile/require.h"
+#include "tests/hostile/scratch.h"
 
 namespace coppice::hostile {
 namespace {
 
 constexpr TerrainInterface k_terrain{sizeof(TerrainInterface), load_terrain};
 constexpr double k_grown_triangle_limit = 20'000;  // beyond it, growing takes long and shows nothing new
-
-std::string_view as_text(std::span<const std::byte> bytes) {
-    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
-// A file with these bytes, for readers of files; one of each name a process.
-class Scratch {
-  public:
-    Scratch(const std::string& name, std::span<const std::byte> bytes) : path_(folder() + "/" + name) {
-        // A new file: some file systems wait for the disk where one is written over.
-        std::filesystem::remove(path_);
-        std::ofstream(path_, std::ios::binary | std::ios::trunc)
-            .write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
-    }
-    const std::string& path() const { return path_; }
-
-  private:
-    struct Folder {
-        const std::string path =
-            (std::filesystem::temp_directory_path() / ("hostile_" + std::to_string(::getpid()))).string();
-        Folder() { std::filesystem::create_directories(path); }
-        ~Folder() {
-            std::error_code ignored;
-            std::filesystem::remove_all(path, ignored);
-        }
-    };
-    static const std::string& folder() {
-        static const Folder k_folder;
-        return k_folder.path;
-    }
-    std::string path_;
-};
 
 bool all_finite(const dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 

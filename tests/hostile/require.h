@@ -14,14 +14,17 @@ inline void require(bool holds, const char* what) {
 }
 
 // A clear error: what is wrong, what would be right, an exit code that says bad input.
+inline void require_clear(const Error& error) {
+    require(!error.fault.empty() && !error.remedy.empty(),
+            "an error says what is wrong and what would be right");
+    require(to_string(error).find('\n') == std::string::npos, "an error is one line");
+}
+
 template <class T>
 bool accepted(const Result<T>& result) {
     if (result) return true;
-    const Error& error = result.error();
-    require(!error.fault.empty() && !error.remedy.empty(),
-            "an error says what is wrong and what would be right");
-    require(exit_code_of(error.id) == 2, "an error of a file is bad input");
-    require(to_string(error).find('\n') == std::string::npos, "an error is one line");
+    require_clear(result.error());
+    require(exit_code_of(result.error().id) == 2, "an error of a file is bad input");
     return false;
 }
 

@@ -12,5 +12,6 @@ void seal_plant(Bytes& bytes);
 void seal_placed(Bytes& bytes);
 void seal_tiles(Bytes& bytes);
 void seal_ground(Bytes& bytes);
+void seal_journal(Bytes& bytes);
 
 }  // namespace coppice::hostile

@@ -232,4 +232,17 @@ std::vector<Bytes> png_seeds() {
     return {as_bytes(std::string_view(reinterpret_cast<const char*>(k_png), sizeof k_png))};
 }
 
+std::vector<Bytes> flight_summary_seeds() {
+    return {as_bytes(
+        R"({"scene":{"name":"meadow","file":"meadow.eco.json"},"settings":{"width":64,"height":48,"repeats":5},"machine":{"processor":"a processor","threads":2}})")};
+}
+
+std::vector<Bytes> flight_frames_seeds() {
+    std::string table = "frame,repeat,FrameTime,vertices,allocations\n";
+    for (int repeat = 0; repeat < 5; ++repeat)
+        for (int frame = 0; frame < 2; ++frame)
+            table += std::to_string(frame) + "," + std::to_string(repeat) + ",1" + std::to_string(repeat) + ".5,1000,3\n";
+    return {as_bytes(table)};
+}
+
 }  // namespace coppice::hostile

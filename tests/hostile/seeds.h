@@ -23,5 +23,13 @@ std::vector<Bytes> gltf_places_seeds();
 std::vector<Bytes> pnm_seeds();
 std::vector<Bytes> pfm_seeds();
 std::vector<Bytes> png_seeds();
+// seeds_editor.cpp
+std::vector<Bytes> edited_scene_seeds();
+std::vector<Bytes> edited_plants_seeds();
+std::vector<Bytes> journal_seeds();
+std::vector<Bytes> script_seeds();
+
+std::vector<Bytes> flight_summary_seeds();
+std::vector<Bytes> flight_frames_seeds();
 
 }  // namespace coppice::hostile

@@ -38,6 +38,15 @@ TEST(JsonObject, KeepsTheFirstFault) {
     EXPECT_EQ(document.status().error().place, "a");
 }
 
+TEST(JsonObject, RefusesWhatNestsTooDeepToBeWalked) {
+    const std::string open(1'000'000, '['), close(1'000'000, ']');
+    const auto deep = JsonDocument::parse("{\"a\": " + open + close + "}", "deep.json");
+    ASSERT_FALSE(deep);
+    EXPECT_EQ(deep.error().id, ErrorId::limit_exceeded);
+    EXPECT_EQ(deep.error().place, "byte 69");
+    EXPECT_TRUE(JsonDocument::parse("{\"a\": \"" + open + "\\\"[\"}", "text.json")) << "brackets of a text";
+}
+
 TEST(JsonObject, NearestNameLeavesStrangersOut) {
     EXPECT_EQ(nearest_name("oka", {"pine", "oak"}), "oak");
     EXPECT_EQ(nearest_name("zzzzzz", {"pine", "oak"}), "");

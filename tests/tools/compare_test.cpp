@@ -7,7 +7,9 @@
 #include "tests/tools/run_program.h"
 #include "tools/coppice/comparison.h"
 #include "tools/coppice/compare_folders.h"
+#include "tools/coppice/lockstep_program.h"
 #include "tools/coppice/rank_tests.h"
+#include "tools/coppice/statistics.h"
 
 using namespace coppice;
 using nlohmann::json;
@@ -28,6 +30,13 @@ std::string write_report(const std::string& folder, const std::vector<double>& r
         for (int frame = 0; frame < 3; ++frame)
             csv << frame << ',' << repeat << ',' << repeat_ms[repeat] << ',' << vertices << '\n';
     return folder;
+}
+
+// A shell script to be run in place of coppice.
+std::string write_program(const std::string& path, const std::string& script) {
+    std::ofstream(path) << "#!/bin/sh\n" << script << "\n";
+    std::filesystem::permissions(path, std::filesystem::perms::owner_all);
+    return path;
 }
 
 }  // namespace
@@ -66,9 +75,62 @@ TEST(RankTests, FindNothingInNoiseAsOftenAsTheySay) {
     EXPECT_GT(grouped, 0.02 * k_trials);
 }
 
+// Where counting gives way to the normal distribution, a verdict does not depend on which of the two it was.
+TEST(RankTests, ExactAndNormalAgreeWhereOneTakesOver) {
+    Random random(11);
+    double worst = 0.0, worst_share = 0.0;
+    for (int trial = 0; trial < 30; ++trial) {
+        const bool ties = trial % 3 == 0;
+        auto draw = [&](size_t count, double shift) {
+            std::vector<double> values(count);
+            for (double& value : values) {
+                value = shift + random.next_in(-1, 1);
+                if (ties) value = std::round(5.0 * value);
+            }
+            return values;
+        };
+        const double shift = 0.0075 * trial;
+        const size_t some = trial % 2 ? k_exact_limit / 2 : k_exact_limit / 3;
+        const std::vector<double> differences = draw(k_exact_limit, shift), a = draw(some, 0.0),
+                                  b = draw(k_exact_limit - some, 2.0 * shift);
+        for (const auto& [exact, normal] :
+             {std::pair(exact_signed_rank_p(differences), normal_signed_rank_p(differences)),
+              std::pair(exact_rank_sum_p(a, b), normal_rank_sum_p(a, b))}) {
+            worst = std::max(worst, std::fabs(exact - normal));
+            if (exact >= 0.001) worst_share = std::max(worst_share, std::fabs(normal / exact - 1.0));
+        }
+    }
+    RecordProperty("worst_difference", std::to_string(worst));
+    RecordProperty("worst_share", std::to_string(worst_share));
+    EXPECT_LT(worst, 0.002);
+    EXPECT_LT(worst_share, 0.2);
+}
+
+TEST(RankTests, LongComparisonsAreJudgedAtOnce) {
+    Random random(3);
+    std::vector<double> differences(20'000), later(20'000);
+    for (double& value : differences) value = random.next_in(-1, 1);
+    for (size_t i = 0; i < later.size(); ++i) later[i] = differences[later.size() - 1 - i] + 0.05;
+    EXPECT_GT(signed_rank_p(differences), 1e-3);
+    EXPECT_LT(signed_rank_p(later), 1e-6);
+    EXPECT_LT(rank_sum_p(differences, later), 1e-6);
+    EXPECT_NEAR(shift_between(differences, later), 0.05, 1e-9);
+    EXPECT_NEAR(shift_of(later) - shift_of(differences), 0.05, 1e-9);
+}
+
 TEST(RankTests, EstimateTheShift) {
     EXPECT_EQ(shift_of(std::vector<double>{1, 2, 3, 100}), 2.75);
+    EXPECT_EQ(shift_of(std::vector<double>{-1, 0, 1}), 0.0);
+    EXPECT_EQ(shift_of({}), 0.0);
     EXPECT_EQ(shift_between(std::vector<double>{1, 2, 3}, std::vector<double>{11, 12, 13}), 10.0);
+    Random random(5);
+    for (size_t count : {1, 2, 7, 30}) {
+        std::vector<double> values(count), means;
+        for (double& value : values) value = std::round(random.next_in(-9, 9)) * (count % 2 ? 1.0 : 0.1);
+        for (size_t i = 0; i < count; ++i)
+            for (size_t k = i; k < count; ++k) means.push_back(0.5 * (values[i] + values[k]));
+        EXPECT_EQ(shift_of(values), median(means)) << count << " values";
+    }
 }
 
 TEST(Comparison, NeedsRareAndLargeEnough) {
@@ -163,9 +225,57 @@ TEST(ComparePrograms, CountsAgreeAndAMissingProgramIsNamed) {
     EXPECT_EQ(missing.exit_code, 2);
     EXPECT_NE(missing.err.find("nothing"), std::string::npos) << missing.err;
     EXPECT_EQ(run_coppice({"compare", COPPICE_PROGRAM, COPPICE_PROGRAM}).exit_code, 2) << "no scene";
-    EXPECT_EQ(
-        run_coppice({"compare", COPPICE_PROGRAM, "/bin/true", "--scene", scene}, {"XDG_CACHE_HOME=" + folder})
-            .exit_code,
-        1)
-        << "a program that says nothing";
+    const auto compare = [&](const std::string& base, const std::string& changed) {
+        return run_coppice({"compare", base, changed, "--scene", scene, "--headless", "64x48"},
+                           {"XDG_CACHE_HOME=" + folder});
+    };
+    EXPECT_EQ(compare(COPPICE_PROGRAM, "/bin/true").exit_code, 1) << "a program that says nothing";
+    EXPECT_EQ(compare("/bin/true", COPPICE_PROGRAM).exit_code, 2) << "with such a base nothing is compared";
+    const std::string crashes = write_program(folder + "/crashes", "echo oh no >&2; kill -SEGV $$"),
+                      later = write_program(
+                          folder + "/later",
+                          R"(echo '{"frames": 3}'; read line; echo '{"ms": 1, "counts": {}}'; kill -SEGV $$)"),
+                      draws = write_program(
+                          folder + "/draws",
+                          R"(echo '{"frames": 3}'; while read line; do echo '{"ms": 1, "counts": {}}'; done)");
+    for (const auto& [program, when] :
+         {std::pair(crashes, "before its first frame"), std::pair(later, "while drawing")}) {
+        const ProgramResult of_new = compare(draws, program), of_base = compare(program, draws);
+        EXPECT_EQ(of_new.exit_code, 1) << of_new.err;
+        EXPECT_EQ(of_base.exit_code, 2) << of_base.err;
+        EXPECT_NE(of_base.err.find(program + ": base: was ended by signal 11"), std::string::npos)
+            << of_base.err;
+        EXPECT_NE(of_base.err.find(when), std::string::npos) << of_base.err;
+    }
+    EXPECT_NE(compare(draws, crashes).err.find("oh no"), std::string::npos) << "what it said itself";
+    EXPECT_NE(compare(draws, crashes).err.find(crashes + ": new: "), std::string::npos);
+}
+
+// Cooking before the first frame takes as long as it takes, as long as something is done.
+TEST(LockstepProgram, TellsASlowStartFromAHang) {
+    const std::string folder = fresh_folder();
+    const LockstepLimits limits{0.3, 20.0};
+    const auto start = [&](const std::string& name, const std::string& script, const LockstepLimits& within) {
+        return LockstepProgram::start(write_program(folder + "/" + name, script), {}, within);
+    };
+    const std::string ready = R"(echo '{"frames": 3}'; )";
+    const auto cooks =
+        start("cooks", "n=0; while [ $n -lt 1500000 ]; do n=$((n + 1)); done; " + ready + "read line", limits);
+    ASSERT_TRUE(cooks) << to_string(cooks.error());
+    EXPECT_EQ((*cooks)->frame_count(), 3u);
+
+    const auto idle = start("idle", "exec sleep 60", limits);
+    ASSERT_FALSE(idle);
+    EXPECT_NE(idle.error().fault.find("did nothing for 0.3 s before its first frame"), std::string::npos)
+        << to_string(idle.error());
+    const auto endless = start("endless", "while :; do :; done", {0.3, 1.0});
+    ASSERT_FALSE(endless);
+    EXPECT_NE(endless.error().fault.find("was not ready for 1 s"), std::string::npos)
+        << to_string(endless.error());
+    const auto stuck = start("stuck", ready + "while :; do :; done", limits);
+    ASSERT_TRUE(stuck) << to_string(stuck.error());
+    const auto drawn = (*stuck)->draw(0, 0.0);
+    ASSERT_FALSE(drawn);
+    EXPECT_NE(drawn.error().fault.find("gave no answer for 0.3 s while drawing"), std::string::npos)
+        << to_string(drawn.error());
 }

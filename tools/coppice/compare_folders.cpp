@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 #include <fmt/format.h>
+#include "plugins/shared/json_object.h"
 #include "runtime/core/file.h"
 #include "tools/coppice/rank_tests.h"
 #include "tools/coppice/statistics.h"
@@ -76,10 +77,12 @@ Result<Report> read_report(const std::string& folder) {
     Report report;
     const std::string file = folder + "/summary.json";
     COPPICE_TRY(const std::string text, read_text_file(file));
-    report.summary = nlohmann::json::parse(text, nullptr, false);
+    COPPICE_TRY(const JsonDocument summary, JsonDocument::parse(text, file));
+    report.summary = summary.root();
     for (const char* key : {"settings", "machine", "scene"})
-        if (!report.summary.is_object() || !report.summary.contains(key))
-            return fail(ErrorId::syntax, file, key, "is not there", "a report that coppice play wrote");
+        if (!report.summary.is_object() || !report.summary.contains(key) || !report.summary[key].is_object())
+            return fail(ErrorId::syntax, file, key, "is not there, or no object",
+                        "a report that coppice play wrote");
     COPPICE_CHECK(read_frames(folder + "/frames.csv", report));
     return report;
 }

@@ -20,13 +20,22 @@ struct Flown {
     std::array<std::map<std::string, double>, k_fliers> counts;  // sums
 };
 
+// Which of the two failed. A base that fails leaves nothing to compare with: bad input, no verdict on the new one.
+Error error_of(Flier flier, Error error) {
+    error.place = flier == k_new ? "new" : "base";
+    if (flier != k_new && error.id == ErrorId::regressed) error.id = ErrorId::usage;
+    return error;
+}
+
 using Fliers = std::array<std::unique_ptr<LockstepProgram>, k_fliers>;
 
 Result<Fliers> start_fliers(const ProgramsToCompare& programs) {
     Fliers fliers;
-    for (size_t i = 0; i < k_fliers; ++i) {
-        COPPICE_TRY(fliers[i], LockstepProgram::start(i == k_new ? programs.changed : programs.base,
-                                                      programs.arguments));
+    for (const Flier flier : {k_base, k_new, k_again}) {
+        auto started = LockstepProgram::start(flier == k_new ? programs.changed : programs.base,
+                                              programs.arguments);
+        if (!started) return fail(error_of(flier, std::move(started.error())));
+        fliers[flier] = std::move(*started);
     }
     return fliers;
 }
@@ -40,11 +49,11 @@ Status fly_block(const ProgramsToCompare& programs, Fliers& fliers, uint32_t fir
         const uint32_t frame = (first_frame + i) % fliers[k_base]->frame_count();
         std::array<double, k_fliers> ms{};
         for (const Flier flier : i < k_block_frames / 2 ? k_forward : k_backward) {
-            COPPICE_TRY(const LockstepProgram::Drawn drawn,
-                        fliers[flier]->draw(frame, flier == k_new ? programs.slower : 0.0));
-            ms[flier] = std::max(drawn.ms, 1e-6);
-            flown.ms[flier].push_back(drawn.ms);
-            for (const auto& [name, count] : drawn.counts) flown.counts[flier][name] += count;
+            const auto drawn = fliers[flier]->draw(frame, flier == k_new ? programs.slower : 0.0);
+            if (!drawn) return fail(error_of(flier, drawn.error()));
+            ms[flier] = std::max(drawn->ms, 1e-6);
+            flown.ms[flier].push_back(drawn->ms);
+            for (const auto& [name, count] : drawn->counts) flown.counts[flier][name] += count;
         }
         new_over_base.push_back(std::log(ms[k_new]) - 0.5 * (std::log(ms[k_base]) + std::log(ms[k_again])));
         again_over_base.push_back(std::log(ms[k_again] / ms[k_base]));

@@ -1,30 +1,14 @@
 #include "plugins/vegetation/cook/import/json_place.h"
 
 #include <cmath>
+#include "plugins/shared/json_depth.h"
 
 namespace coppice {
 
 Result<nlohmann::json> parse_json(std::string_view text, const std::string& file, int depth_limit) {
-    int depth = 0;
-    bool in_text = false;
-    for (size_t i = 0; i < text.size(); ++i) {
-        char c = text[i];
-        if (in_text) {
-            if (c == '\\')
-                ++i;
-            else if (c == '"')
-                in_text = false;
-        } else if (c == '"') {
-            in_text = true;
-        } else if (c == '{' || c == '[') {
-            if (++depth > depth_limit)
-                return fail(ErrorId::limit_exceeded, file, "byte " + std::to_string(i),
-                            "JSON nested deeper than " + std::to_string(depth_limit) + " levels",
-                            "a flatter file");
-        } else if (c == '}' || c == ']') {
-            --depth;
-        }
-    }
+    if (const auto byte = byte_nested_deeper(text, depth_limit))
+        return fail(ErrorId::limit_exceeded, file, "byte " + std::to_string(*byte),
+                    "JSON nested deeper than " + std::to_string(depth_limit) + " levels", "a flatter file");
     try {
         return nlohmann::json::parse(text.begin(), text.end());
     } catch (const nlohmann::json::parse_error& thrown) {

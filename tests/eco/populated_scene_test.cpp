@@ -95,7 +95,7 @@ TEST_F(PopulatedScenes, OpenTheirOwnPacksAndNoOthers) {
 TEST_F(PopulatedScenes, AreReadStrictly) {
     using nlohmann::json;
     EXPECT_EQ(load("{}").error().id, ErrorId::format_unknown);
-    EXPECT_EQ(load("{\"populated\": 2").error().id, ErrorId::syntax);
+    EXPECT_EQ(load("{\"populated\": 3").error().id, ErrorId::syntax);
     const Error older = error_after([](json& j) { j["populated"] = 1; });
     EXPECT_EQ(older.id, ErrorId::format_unknown);
     EXPECT_EQ(older.place, "populated");

@@ -278,7 +278,7 @@ TEST_F(Populate, AFolderOfAnotherVersionIsRefusedAndMadeAgain) {
     ASSERT_EQ(populate(out_).exit_code, 0);
     const Files sound = contents(out_);
     std::string older = sound.at("scene.json");
-    older.replace(older.find("\"populated\": 2"), 14, "\"populated\": 1");
+    older.replace(older.find("\"populated\": 3"), 14, "\"populated\": 2");
     write(out_ + "/scene.json", older);
     const ProgramResult played = run_coppice({"play", out_, "--headless", "32x32"});
     EXPECT_EQ(played.exit_code, 2);

@@ -144,6 +144,8 @@ Status run_now(const Device& device, Record record) {
     if (result == VK_SUCCESS) {
         call = "vkWaitForFences";
         result = vkWaitForFences(device.handle, 1, &fence, VK_TRUE, UINT64_MAX);
+        // What is still being executed must not lose what it is executed with; of a lost device nothing is.
+        if (result != VK_SUCCESS) vkQueueWaitIdle(device.queue);
     }
     vkDestroyFence(device.handle, fence, device.allocator);
     vkDestroyCommandPool(device.handle, pool, device.allocator);

@@ -106,7 +106,8 @@ TEST(Includes, StagesOfTheEditorIncludeOnlyWhatStandsBefore) {
                   {"commands", {"document"}},
                   {"session", {"document", "commands"}},
                   {"view", {"document", "commands", "session"}},
-                  {"window", {"document", "commands", "session", "view"}}});
+                  {"plant", {"document", "commands", "session", "view"}},
+                  {"window", {"document", "commands", "session", "view", "plant"}}});
     for (const char* folder : {"editor/document", "editor/commands", "editor/session"})
         for (const Include& include : find_includes(folder))
             for (const char* above : {"runtime/gpu/", "runtime/frame/", "runtime/window/", "plugins/vegetation/draw/",

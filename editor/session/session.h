@@ -16,7 +16,7 @@ class Session {
   public:
     struct Settings {
         const TerrainInterface* terrain = nullptr;  // null: the ground is the plane y = 0
-        bool journal = true;
+        bool journal = true;  // false: nothing is to be saved, so that others may have the scene open as well
         MapPictures::Find find_images = {};  // for maps of density that are neither PGM nor PPM
     };
     // A path without a file starts a scene there; a plant is opened by itself. Errors: Document::open's; write_failed where another editor has it open.

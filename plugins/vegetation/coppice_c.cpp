@@ -112,7 +112,9 @@ FrameSettings settings_of(const CoppiceQuality* given) {
 
 Placement placement_of(const CoppicePlant* given) {
     const CoppicePlant plant = take(given);
-    return {place_of(plant.position), or_default(plant.scale, 1.0f), pack_turn_about_y(plant.turn_rad),
+    return {place_of(plant.position),
+            or_default(plant.scale, 1.0f),
+            pack_turn_about_y(plant.turn_rad),
             {plant.model, plant.seed}};
 }
 
@@ -131,7 +133,8 @@ int create(const CoppiceForestSettings* given, CoppiceForest** forest) {
     return guarded([&] {
         const CoppiceForestSettings taken = take(given);
         EmbeddedForestSettings settings;
-        settings.device = {taken.instance, taken.physical_device, taken.device, VK_NULL_HANDLE, taken.queue_family};
+        settings.device = {taken.instance, taken.physical_device, taken.device, VK_NULL_HANDLE,
+                           taken.queue_family};
         settings.scene = taken.scene ? taken.scene : "";
         settings.cache_dir = taken.cache_dir ? taken.cache_dir : "";
         settings.width = or_default(taken.width, settings.width);
@@ -192,8 +195,9 @@ void set_frame_ms(CoppiceForest* forest, uint32_t slot, double ms) {
 
 void report(const CoppiceForest* forest, CoppiceReport* to) {
     const FrameReport& of = forest->forest->report();
-    give(CoppiceReport{0, of.plants_visible, of.plants, of.triangles, of.lines, of.points, of.leaves, of.vertices,
-                       of.gpu_bytes, of.sample_distance_px, float(of.cull_ms + of.lod_ms + of.write_ms)},
+    give(CoppiceReport{0, of.plants_visible, of.plants, of.triangles, of.lines, of.points, of.leaves,
+                       of.vertices, of.gpu_bytes, of.sample_distance_px,
+                       float(of.cull_ms + of.lod_ms + of.write_ms)},
          to);
 }
 
@@ -242,7 +246,8 @@ int remove_plant(CoppiceForest* forest, uint32_t number) {
 
 void first_hit(const CoppiceForest* forest, const double from[3], const float direction[3],
                float most_distance_m, CoppiceHit* hit) {
-    give(hit_of(forest->forest->stems().first_hit(place_of(from), vector_of(direction), most_distance_m)), hit);
+    give(hit_of(forest->forest->stems().first_hit(place_of(from), vector_of(direction), most_distance_m)),
+         hit);
 }
 
 void nearest_stem(const CoppiceForest* forest, const double at[3], float within_m, CoppiceHit* hit) {
@@ -257,7 +262,10 @@ size_t stems_in_box(const CoppiceForest* forest, const double least[3], const do
         forest->forest->stems().in_box(place_of(least), place_of(most), found);
         count = found.size();
         for (size_t i = 0; i < std::min(room, count); ++i) {
-            CoppiceStem stem{uint32_t(std::min(stride_bytes, sizeof(CoppiceStem))), found[i].plant, {}, {},
+            CoppiceStem stem{uint32_t(std::min(stride_bytes, sizeof(CoppiceStem))),
+                             found[i].plant,
+                             {},
+                             {},
                              found[i].radius_m};
             put(stem.foot, found[i].foot_world);
             put(stem.head, found[i].head_world);
@@ -268,11 +276,26 @@ size_t stems_in_box(const CoppiceForest* forest, const double least[3], const do
     return count;
 }
 
-constexpr CoppiceForestInterface k_interface{
-    sizeof(CoppiceForestInterface), COPPICE_FOREST_VERSION, message,       create,    destroy,
-    record,                         resize,                 set_light,     set_frame_ms, report,
-    scene_camera,                   reload_if_changed,      model_count,   model_name, add_plant,
-    move_plant,                     remove_plant,           first_hit,     nearest_stem, stems_in_box};
+constexpr CoppiceForestInterface k_interface{sizeof(CoppiceForestInterface),
+                                             COPPICE_FOREST_VERSION,
+                                             message,
+                                             create,
+                                             destroy,
+                                             record,
+                                             resize,
+                                             set_light,
+                                             set_frame_ms,
+                                             report,
+                                             scene_camera,
+                                             reload_if_changed,
+                                             model_count,
+                                             model_name,
+                                             add_plant,
+                                             move_plant,
+                                             remove_plant,
+                                             first_hit,
+                                             nearest_stem,
+                                             stems_in_box};
 
 }  // namespace
 }  // namespace coppice

@@ -8,7 +8,7 @@
 namespace coppice {
 
 // A whole file. path: as it was asked for, with the folder of the file that names it before it. From any thread, from several
-// at once. What it says is file_missing is looked for on the disk, where cooked plants are kept; any other error is the answer.
+// at once. What it says is file_missing is looked for on the disk, where what was made from them is kept; any other error is the answer.
 using FileSource = Result<std::vector<std::byte>> (*)(void* context, const std::string& path);
 // source == nullptr: the disk alone. While nothing is read.
 void set_file_source(FileSource source, void* context);

@@ -343,6 +343,7 @@ TEST_F(Commands, NestTilesInTiles) {
                   .fault,
               "it would come to stand in itself");
     ASSERT_TRUE(session->save());
+    session.reset();
     session = open();
     EXPECT_EQ(session->document().files().size(), 3u);
     EXPECT_EQ(session->document().find(folder + "/tiles/grove.eco.json")->plants.size(), 2u);

@@ -54,6 +54,7 @@ TEST_F(Parts, RefuseWhatTheCookWould) {
     EXPECT_NE(to_string(refused.error()).find("colour"), std::string::npos);
     EXPECT_EQ(session->history().edits().size(), 0u);
     ASSERT_TRUE(write_text_file(settings_path(), R"({"parts": {"bark": {"importance": 3}}})"));
+    session.reset();
     session = open();
     perform(*session, "set_part", k_leaves_as_points);
     ASSERT_TRUE(session->save());
@@ -112,6 +113,7 @@ TEST_F(Parts, OfAPlantByItself) {
     ASSERT_TRUE(session->recover());
     ASSERT_TRUE(session->save());
     EXPECT_TRUE(session->saved());
+    session.reset();
     std::set<std::string> after = before;
     after.insert("oak.json.lod.json");
     EXPECT_EQ(files(), after);

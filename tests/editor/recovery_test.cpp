@@ -235,6 +235,21 @@ TEST_F(Recovery, LosesNothingOnAFullDisk) {
     EXPECT_EQ(session->document().hash(), hash);
 }
 
+// A journal that somebody else wrote has no say over files that are none of the scene's.
+TEST_F(Recovery, MovesNoFileThatAJournalOnlyNames) {
+    const std::string bystander = folder + "/diary.txt";
+    ASSERT_TRUE(write_text_file(bystander, "mine"));
+    ASSERT_TRUE(Journal::create(path + ".journal", {{bystander, k_no_file}}));
+    {
+        auto session = Session::open(path, {&k_test_terrain});
+        ASSERT_TRUE(session);
+        const auto recovered = (*session)->recover();
+        ASSERT_FALSE(recovered);
+        EXPECT_EQ(recovered.error().id, ErrorId::file_corrupt);
+    }
+    EXPECT_EQ(read("diary.txt"), "mine");
+}
+
 TEST_F(Recovery, MayBeDeclined) {
     const std::vector<uint64_t> hashes = work_and_be_killed();
     auto session = open();

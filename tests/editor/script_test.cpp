@@ -26,7 +26,7 @@ TEST_F(Scripts, LayOutAndCheckASceneWithoutAWindow) {
     EXPECT_TRUE(session->saved());
     EXPECT_NE(read("plants.csv").find("30,30,birch"), std::string::npos);
     EXPECT_NE(read("plants.gltf").find("\"birch\""), std::string::npos);
-    EXPECT_EQ(count(*open(), "birch"), 1u);
+    EXPECT_EQ(count(*open(false), "birch"), 1u);
 }
 
 TEST_F(Scripts, StopWhereTheyFailAndSayWhere) {

@@ -20,7 +20,8 @@ void require_sound(Document& document) {
     for (const Error& fault : document.faults()) require_clear(fault);
     for (const auto& [path, file] : document.files()) {
         if (!file.text) continue;
-        require(parse_scene_text(file.text->text, path).has_value(), "a text that would be saved can be read");
+        require(parse_scene_text(file.text->text, path).has_value(),
+                "a text that would be saved can be read");
         const SceneTextPtr printed = print_scene_text(file.text->json);
         const auto again = parse_scene_text(printed->text, path);
         require(again && (*again)->json == file.text->json, "a text that is printed says the same");

@@ -32,7 +32,11 @@ bool compare(std::span<const std::byte> summary, std::span<const std::byte> fram
 
 }  // namespace
 
-bool read_flight_summary(std::span<const std::byte> bytes) { return compare(bytes, flight_frames_seeds().front()); }
-bool read_flight_frames(std::span<const std::byte> bytes) { return compare(flight_summary_seeds().front(), bytes); }
+bool read_flight_summary(std::span<const std::byte> bytes) {
+    return compare(bytes, flight_frames_seeds().front());
+}
+bool read_flight_frames(std::span<const std::byte> bytes) {
+    return compare(flight_summary_seeds().front(), bytes);
+}
 
 }  // namespace coppice::hostile

@@ -33,13 +33,13 @@ class Scratch {
 
   private:
     struct Folder {
-        const std::string path =
-            (in_memory() / ("hostile_" + std::to_string(::getpid()))).string();
+        const std::string path = (in_memory() / ("hostile_" + std::to_string(::getpid()))).string();
         // Journals wait for the disk at each step.
         static std::filesystem::path in_memory() {
             std::error_code ignored;
-            return std::filesystem::is_directory("/dev/shm", ignored) ? "/dev/shm"
-                                                                       : std::filesystem::temp_directory_path();
+            return std::filesystem::is_directory("/dev/shm", ignored)
+                       ? "/dev/shm"
+                       : std::filesystem::temp_directory_path();
         }
         Folder() { std::filesystem::create_directories(path); }
         ~Folder() {

@@ -50,32 +50,34 @@ void seal_journal(Bytes& bytes) {
 }
 
 std::vector<Bytes> edited_scene_seeds() {
-    return {as_bytes(k_edited_scene),
-            as_bytes(
-                R"({"plants":{"oak":{"source":"oak.json"}},"references":[{"scene":"edited.eco.json","at":[4,5],"turn_deg":90},{"scene":"none.eco.json"}],"placements":[]})")};
+    return {
+        as_bytes(k_edited_scene),
+        as_bytes(
+            R"({"plants":{"oak":{"source":"oak.json"}},"references":[{"scene":"edited.eco.json","at":[4,5],"turn_deg":90},{"scene":"none.eco.json"}],"placements":[]})")};
 }
 
 std::vector<Bytes> edited_plants_seeds() { return placed_seeds(); }
 
 std::vector<Bytes> journal_seeds() {
     const std::vector<std::string> kinds{"oak", "fern"};
-    const PlacedPlant oak{128, 256, 0, 1, 0, pack_scale(1.0f), 0}, fern{-64, 32, 1, 0, 0, pack_scale(0.7f), 3};
+    const PlacedPlant oak{128, 256, 0, 1, 0, pack_scale(1.0f), 0},
+        fern{-64, 32, 1, 0, 0, pack_scale(0.7f), 3};
     const auto text = parse_scene_text(k_edited_scene, k_journalled_scene);
-    const auto longer = parse_scene_text(R"({"plants": {"elm": {"source": "elm.json"}}, "placements": [{"packed": "planted.plants"}]})",
-                                         k_journalled_scene);
+    const auto longer = parse_scene_text(
+        R"({"plants": {"elm": {"source": "elm.json"}}, "placements": [{"packed": "planted.plants"}]})",
+        k_journalled_scene);
     const Edit paint{"paint 2", {{k_journalled_scene, *text, *text, {}, {oak, fern}}}},
         remove{"delete 1", {{k_journalled_scene, *text, *text, {fern}, {}}}},
         change{"set", {{k_journalled_scene, *text, *longer, {}, {}}}},
         fresh{"create", {{"other.eco.json", nullptr, *longer, {}, {oak}}}};
     const JournalContent content{{{k_journalled_scene, hash_text(k_edited_scene)}},
-                                 {write_edit(paint, kinds), write_edit(remove, kinds), write_edit(fresh, kinds),
-                                  write_edit(change, kinds)}};
+                                 {write_edit(paint, kinds), write_edit(remove, kinds),
+                                  write_edit(fresh, kinds), write_edit(change, kinds)}};
     return {as_bytes(write_journal(content))};
 }
 
 std::vector<Bytes> script_seeds() {
-    return {
-        as_bytes(R"({"commands": [
+    return {as_bytes(R"({"commands": [
 {"add_population": {"name": "birch", "source": "birch.json", "variations": 3, "height_m": 12}},
 {"paint": {"stroke": [[0, 0], [9, 4]], "radius_m": 4, "scatter": {"plants": {"birch": 1, "fern": 2}, "density_per_m2": 0.05, "spacing_m": 2, "seed": 4}}},
 {"fill": {"polygon": [[0, 0], [30, 0], [30, 30]], "scatter": {"plants": {"fern": 1}, "density_per_m2": 0.1, "slope_max_deg": 25}}},
@@ -85,7 +87,7 @@ std::vector<Bytes> script_seeds() {
 {"scale": {"populations": ["birch"], "by": 1.1}}, {"become": {"near": [-8, 5], "radius_m": 9, "population": "oak"}},
 {"erase": {"stroke": [[0, 0]], "radius_m": 2, "share": 0.5, "seed": 3}}, {"undo": {"times": 2}}, {"redo": {}},
 {"expect": {"populations": ["birch"], "least": 0, "most": 100}}]})"),
-        as_bytes(R"({"commands": [
+            as_bytes(R"({"commands": [
 {"set_population": {"name": "oak", "height_m": 9}}, {"rename_population": {"name": "fern", "to": "bracken"}},
 {"set_region": {"name": "pond", "region": {"polygon": [[0, 0], [4, 0], [4, 4]]}}},
 {"add_rule": {"scatter": {"plant": "oak", "count": 5, "region": "pond"}}}, {"set_rule": {"index": 2, "scatter": {"plant": "oak", "count": 3, "region": "pond"}}},

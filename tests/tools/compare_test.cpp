@@ -231,13 +231,14 @@ TEST(ComparePrograms, CountsAgreeAndAMissingProgramIsNamed) {
     };
     EXPECT_EQ(compare(COPPICE_PROGRAM, "/bin/true").exit_code, 1) << "a program that says nothing";
     EXPECT_EQ(compare("/bin/true", COPPICE_PROGRAM).exit_code, 2) << "with such a base nothing is compared";
-    const std::string crashes = write_program(folder + "/crashes", "echo oh no >&2; kill -SEGV $$"),
-                      later = write_program(
-                          folder + "/later",
-                          R"(echo '{"frames": 3}'; read line; echo '{"ms": 1, "counts": {}}'; kill -SEGV $$)"),
-                      draws = write_program(
-                          folder + "/draws",
-                          R"(echo '{"frames": 3}'; while read line; do echo '{"ms": 1, "counts": {}}'; done)");
+    const std::string
+        crashes = write_program(folder + "/crashes", "echo oh no >&2; kill -SEGV $$"),
+        later = write_program(
+            folder + "/later",
+            R"(echo '{"frames": 3}'; read line; echo '{"ms": 1, "counts": {}}'; kill -SEGV $$)"),
+        draws = write_program(
+            folder + "/draws",
+            R"(echo '{"frames": 3}'; while read line; do echo '{"ms": 1, "counts": {}}'; done)");
     for (const auto& [program, when] :
          {std::pair(crashes, "before its first frame"), std::pair(later, "while drawing")}) {
         const ProgramResult of_new = compare(draws, program), of_base = compare(program, draws);
@@ -259,8 +260,8 @@ TEST(LockstepProgram, TellsASlowStartFromAHang) {
         return LockstepProgram::start(write_program(folder + "/" + name, script), {}, within);
     };
     const std::string ready = R"(echo '{"frames": 3}'; )";
-    const auto cooks =
-        start("cooks", "n=0; while [ $n -lt 1500000 ]; do n=$((n + 1)); done; " + ready + "read line", limits);
+    const auto cooks = start(
+        "cooks", "n=0; while [ $n -lt 1500000 ]; do n=$((n + 1)); done; " + ready + "read line", limits);
     ASSERT_TRUE(cooks) << to_string(cooks.error());
     EXPECT_EQ((*cooks)->frame_count(), 3u);
 

@@ -32,8 +32,8 @@ using Fliers = std::array<std::unique_ptr<LockstepProgram>, k_fliers>;
 Result<Fliers> start_fliers(const ProgramsToCompare& programs) {
     Fliers fliers;
     for (const Flier flier : {k_base, k_new, k_again}) {
-        auto started = LockstepProgram::start(flier == k_new ? programs.changed : programs.base,
-                                              programs.arguments);
+        auto started =
+            LockstepProgram::start(flier == k_new ? programs.changed : programs.base, programs.arguments);
         if (!started) return fail(error_of(flier, std::move(started.error())));
         fliers[flier] = std::move(*started);
     }

@@ -139,13 +139,13 @@ TEST_F(EditorInAWindow, LaysOutAndSavesASceneByMouseAndKeys) {
     // A larger and denser brush.
     ASSERT_TRUE(xdotool("key 3 key bracketright key bracketright key shift+bracketright key shift+bracketright"));
     ASSERT_TRUE(stroke("", 75));
-    // A polygon of birches, and one fern by itself, which is moved.
-    ASSERT_TRUE(xdotool("key 1 key p sleep 0.2 mousemove 350 440 click 1 sleep 0.2 mousemove 460 445 click 1 sleep 0.2 "
+    // A polygon of daisies, and one fern by itself, which is moved.
+    ASSERT_TRUE(xdotool("key p sleep 0.2 mousemove 350 440 click 1 sleep 0.2 mousemove 460 445 click 1 sleep 0.2 "
                         "mousemove 400 500 click 1 sleep 0.2"));
     ASSERT_TRUE(step("key Return"));
-    ASSERT_TRUE(step("key 2 key t sleep 0.2 mousemove 300 520 click 1"));
-    ASSERT_TRUE(step("key v sleep 0.2 mousemove 300 520 click 1 sleep 0.3 mousedown 1 sleep 0.1 mousemove 320 500 sleep 0.1 "
-                     "mousemove 340 490 sleep 0.1 mouseup 1"));
+    ASSERT_TRUE(step("key 2 key t sleep 0.2 mousemove 350 530 click 1"));
+    ASSERT_TRUE(step("key v sleep 0.2 mousemove 350 530 click 1 sleep 0.3 mousedown 1 sleep 0.1 mousemove 370 520 sleep 0.1 "
+                     "mousemove 390 510 sleep 0.1 mouseup 1"));
     ASSERT_TRUE(xdotool("key ctrl+s"));
     ASSERT_TRUE(wait_until([&] { return !std::filesystem::exists(journal_path(path)); }));
     ASSERT_TRUE(quit()) << read("said.txt");

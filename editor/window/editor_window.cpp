@@ -22,6 +22,7 @@ namespace coppice {
 namespace {
 
 constexpr uint32_t k_accumulate_limit = 16;
+constexpr float k_handle_share = 0.02f;  // of the distance: as large as a tile's mark is to be hit
 constexpr float k_coarsest_px = 4.0f;  // where frames are slow whatever they draw, plants are not given up for it
 constexpr float k_walk_m_per_s = 6.0f, k_fast_factor = 6.0f, k_turn_rad_per_px = 0.004f,
                 k_pitch_limit_rad = 1.55f;
@@ -266,6 +267,7 @@ class EditorWindow {
                 state_.help = !state_.help;
                 return;
             case GLFW_KEY_DELETE:
+                if (tools_.selected_tile()) return tools_.act_on_tile(session_, "remove_tile", nlohmann::json::object());
                 return tools_.act_on_selection(session_, "delete", nlohmann::json::object());
             case GLFW_KEY_ENTER:
             case GLFW_KEY_KP_ENTER:
@@ -339,6 +341,8 @@ class EditorWindow {
         for (const PointerEvent& event : std::exchange(pointer_, {})) {
             Gesture gesture;
             gesture.ground = pick_ground(camera_, size, event.at_px, session_.terrain());
+            if (gesture.ground)
+                gesture.handle_m = double(k_handle_share) * glm::length(*gesture.ground - camera_.position_world);
             gesture.pressed = event.pressed && in_view;
             gesture.held = event.held;
             gesture.released = event.released;
@@ -368,6 +372,29 @@ class EditorWindow {
         }
     }
 
+    // A square on the ground at each of the root's tiles, and its name.
+    void draw_tile_marks() const {
+        const std::vector<TileHandle> handles = tile_handles(session_);
+        const ViewSize size{float(view_->width), float(view_->height)};
+        for (size_t i = 0; i < handles.size(); ++i) {
+            const bool is_selected = tools_.selected_tile() == i;
+            const dvec2 at = handles[i].at + (is_selected ? tools_.dragged() : dvec2(0.0));
+            const dvec3 ground(at.x, ground_height(session_.terrain(), at.x, at.y), at.y);
+            const double reach_m = double(k_handle_share) * glm::length(ground - camera_.position_world);
+            const ImU32 color = is_selected ? IM_COL32(120, 220, 255, 255) : IM_COL32(255, 240, 120, 255);
+            draw_on_ground({at + dvec2(-reach_m, 0), at + dvec2(0, -reach_m), at + dvec2(reach_m, 0), at + dvec2(0, reach_m)}, true,
+                           color);
+            const auto mark = project(camera_, size, ground);
+            if (!mark) continue;
+            const float apart = 24.0f * state_.scale, edge = 3.0f * state_.scale;
+            const ImVec2 text = ImGui::CalcTextSize(handles[i].scene.c_str());
+            const ImVec2 begin(mark->x + apart, mark->y - 0.5f * text.y), end(begin.x + text.x, begin.y + text.y);
+            ImDrawList* list = ImGui::GetBackgroundDrawList();
+            list->AddRectFilled({begin.x - edge, begin.y}, {end.x + edge, end.y + edge}, IM_COL32(0, 0, 0, 140), edge);
+            list->AddText(begin, color, handles[i].scene.c_str());
+        }
+    }
+
     void draw_marks() const {
         const ImU32 color = ImGui::GetIO().KeyShift || ImGui::GetIO().KeyCtrl ? IM_COL32(255, 90, 60, 255)
                                                                               : IM_COL32(255, 240, 120, 255);
@@ -381,9 +408,10 @@ class EditorWindow {
             draw_on_ground(circle, true, color);
         }
         if (tools_.tool == Tool::polygon) draw_on_ground(tools_.polygon(), true, color);
+        if (tools_.tool == Tool::select) draw_tile_marks();
         if (tools_.tool == Tool::select && tools_.selected()) {
             const PlacedPlant& plant = *tools_.selected();
-            const dvec2 at = ground_place(plant);
+            const dvec2 at = ground_place(plant) + tools_.dragged();
             const Box bounds = view_->bounds_of(plant, session_.document());
             const double reach_m = std::max(0.3, 0.5 * double(std::max(bounds.size().x, bounds.size().z)) *
                                                      double(unpack_scale(plant.scale)));

@@ -123,8 +123,24 @@ void draw_tools(Session& session, Tools& tools) {
         ImGui::SameLine();
         if (ImGui::Button("delete")) tools.act_on_selection(session, "delete", nlohmann::json::object());
         text("drag moves it");
+    } else if (tools.tool == Tool::select && tools.selected_tile()) {
+        const std::vector<TileHandle> handles = tile_handles(session);
+        const size_t index = *tools.selected_tile();
+        if (index >= handles.size()) return tools.forget_selection();
+        const TileHandle& tile = handles[index];
+        text(fmt::format("{} at {:.1f}, {:.1f}", tile.scene, tile.at.x, tile.at.y));
+        auto turned = [&](double by_deg) { return nlohmann::json{{"turn_deg", std::remainder(tile.turn_deg + by_deg, 360.0)}}; };
+        if (ImGui::Button("turn left")) tools.act_on_tile(session, "move_tile", turned(15.0));
+        ImGui::SameLine();
+        if (ImGui::Button("turn right")) tools.act_on_tile(session, "move_tile", turned(-15.0));
+        if (ImGui::Button("larger")) tools.act_on_tile(session, "move_tile", {{"scale", tile.scale * 1.1}});
+        ImGui::SameLine();
+        if (ImGui::Button("smaller")) tools.act_on_tile(session, "move_tile", {{"scale", tile.scale / 1.1}});
+        ImGui::SameLine();
+        if (ImGui::Button("remove")) tools.act_on_tile(session, "remove_tile", nlohmann::json::object());
+        text("drag its mark moves it");
     } else if (tools.tool == Tool::select) {
-        text("click a placed plant");
+        text("click a placed plant, or the mark of a tile");
     }
 }
 

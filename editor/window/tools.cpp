@@ -102,6 +102,53 @@ void Tools::pick(Session& session, dvec2 at) {
                                              });
 }
 
+std::vector<TileHandle> tile_handles(const Session& session) {
+    std::vector<TileHandle> handles;
+    const auto& json = session.document().root().text->json;
+    const auto references = json.find("references");
+    if (references == json.end() || !references->is_array()) return handles;
+    for (const auto& reference : *references) {
+        TileHandle handle{"", dvec2(0.0), 0.0, 1.0};
+        if (reference.is_object()) {
+            if (const auto scene = reference.find("scene"); scene != reference.end() && scene->is_string())
+                handle.scene = scene->get<std::string>();
+            const auto at = reference.find("at");
+            if (at != reference.end() && at->is_array() && at->size() >= 2 && at->front().is_number() && at->back().is_number())
+                handle.at = {at->front().get<double>(), at->back().get<double>()};
+            for (const auto& [key, value] : {std::pair{"turn_deg", &handle.turn_deg}, {"scale", &handle.scale}})
+                if (const auto said = reference.find(key); said != reference.end() && said->is_number())
+                    *value = said->get<double>();
+        }
+        handles.push_back(std::move(handle));
+    }
+    return handles;
+}
+
+// Tiles go before plants: they are few, and stand among them.
+void Tools::pick_tile(const Session& session, dvec2 at, double handle_m) {
+    tile_.reset();
+    const std::vector<TileHandle> handles = tile_handles(session);
+    double nearest_m = handle_m;
+    for (size_t i = 0; i < handles.size(); ++i)
+        if (const double away_m = glm::length(handles[i].at - at); away_m < nearest_m) {
+            nearest_m = away_m;
+            select_tile(i);
+        }
+}
+
+void Tools::select_tile(size_t index) {
+    selected_.reset();
+    tile_ = index;
+}
+
+void Tools::act_on_tile(Session& session, const char* command, nlohmann::json arguments) {
+    if (!tile_) return;
+    arguments["index"] = *tile_;
+    const bool removes = std::string_view(command) == "remove_tile";
+    perform(session, command, arguments);
+    if (removes && message.empty()) tile_.reset();
+}
+
 void Tools::begin_stroke(Session& session, const Gesture& gesture) {
     message.clear();
     erasing_ = gesture.shift || gesture.control;
@@ -175,6 +222,11 @@ void Tools::stop(Session& session) {
     } else if (tool == Tool::select && selected_ && glm::length(drag_to_ - drag_from_) > 0.05) {
         const dvec2 by = drag_to_ - drag_from_;
         act_on_selection(session, "move", {{"by", {by.x, by.y}}});
+    } else if (tool == Tool::select && tile_ && glm::length(drag_to_ - drag_from_) > 0.05) {
+        const std::vector<TileHandle> handles = tile_handles(session);
+        if (*tile_ >= handles.size()) return;
+        const dvec2 to = handles[*tile_].at + drag_to_ - drag_from_;
+        act_on_tile(session, "move_tile", {{"at", {to.x, to.y}}});
     }
 }
 
@@ -211,9 +263,10 @@ void Tools::handle(Session& session, const Gesture& gesture) {
             break;
         case Tool::select:
             if (gesture.pressed && at) {
-                pick(session, *at);
+                pick_tile(session, *at, gesture.handle_m);
+                if (!tile_) pick(session, *at);
                 drag_from_ = drag_to_ = *at;
-                dragging_ = selected_.has_value();
+                dragging_ = selected_.has_value() || tile_.has_value();
             }
             if (dragging_ && gesture.held && at) drag_to_ = *at;
             break;

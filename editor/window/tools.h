@@ -30,10 +30,19 @@ struct BrushSettings {
 // One frame's gesture.
 struct Gesture {
     std::optional<dvec3> ground;                           // under the cursor
+    double handle_m = 0.5;                                 // how far around it a tile's handle is taken, on the ground
     bool pressed = false, held = false, released = false;  // the left button, in the view
     bool shift = false, control = false, alt = false;
     bool confirmed = false, cancelled = false;  // Enter or right click; Escape
 };
+
+// Where the root's tiles stand, by their number; of those that do not say so, at the origin.
+struct TileHandle {
+    std::string scene;
+    dvec2 at;
+    double turn_deg, scale;
+};
+std::vector<TileHandle> tile_handles(const Session& session);
 
 class Tools {
   public:
@@ -48,19 +57,29 @@ class Tools {
     void handle(Session& session, const Gesture& gesture);
     // Also when the tool changes or the window loses the mouse: a stroke ends where it is.
     void stop(Session& session);
-    // What the selected plant becomes.
+    // What the selected plant, or tile, becomes.
     void act_on_selection(Session& session, const char* command, nlohmann::json arguments);
     void perform(Session& session, const char* command, const nlohmann::json& arguments);
     nlohmann::json rule() const;  // "scatter", without the region
 
     const std::vector<dvec2>& polygon() const { return polygon_; }
     const std::optional<PlacedPlant>& selected() const { return selected_; }
-    void forget_selection() { selected_.reset(); }
+    // Which of the root's references, where a tile is.
+    const std::optional<size_t>& selected_tile() const { return tile_; }
+    void select_tile(size_t index);
+    void act_on_tile(Session& session, const char* command, nlohmann::json arguments);
+    // How far what is selected has been dragged, until the button is let go.
+    dvec2 dragged() const { return dragging_ && tool == Tool::select ? drag_to_ - drag_from_ : dvec2(0.0); }
+    void forget_selection() {
+        selected_.reset();
+        tile_.reset();
+    }
 
   private:
     void begin_stroke(Session& session, const Gesture& gesture);
     void extend_stroke(Session& session, dvec2 to);
     void pick(Session& session, dvec2 at);
+    void pick_tile(const Session& session, dvec2 at, double handle_m);
 
     std::map<std::string, float> densities_;  // of populations that are not active
     std::optional<PaintStroke> stroke_;
@@ -72,6 +91,7 @@ class Tools {
     uint64_t stroke_number_ = 0;
     std::vector<dvec2> polygon_;
     std::optional<PlacedPlant> selected_;
+    std::optional<size_t> tile_;
     dvec2 drag_from_{0.0}, drag_to_{0.0};
 };
 

@@ -175,6 +175,26 @@ TEST_F(EditorInAWindow, LaysOutAndSavesASceneByMouseAndKeys) {
     EXPECT_TRUE(std::filesystem::exists(folder + "/flown/summary.json"));
 }
 
+// The mark of a tile is dragged, and the tile comes after it.
+TEST_F(EditorInAWindow, MovesTilesByHand) {
+    ASSERT_TRUE(write_text_file(folder + "/tile.eco.json", k_window_scene));
+    ASSERT_TRUE(write_text_file(path, R"({"plants": {}, "placements": [], "references": [{"scene": "tile.eco.json", "at": [0, 0]}]})"));
+    ASSERT_TRUE(start()) << read("said.txt");
+    // A new scene is looked at about its origin, which lies in the middle of the view.
+    ASSERT_TRUE(step("key v sleep 0.3 mousemove 400 306 mousedown 1 sleep 0.1 mousemove 420 350 sleep 0.1 mousemove 440 400 sleep 0.1 "
+                     "mouseup 1"))
+        << read("said.txt");
+    ASSERT_TRUE(xdotool("key ctrl+s"));
+    ASSERT_TRUE(wait_until([&] { return !std::filesystem::exists(journal_path(path)); }));
+    ASSERT_TRUE(quit()) << read("said.txt");
+    const auto session = open(false);
+    ASSERT_TRUE(session);
+    const auto at = session->document().root().text->json["references"][0]["at"];
+    EXPECT_GT(at[0].get<double>(), 1.0);   // to the right
+    EXPECT_GT(at[1].get<double>(), 10.0);  // and nearer
+    EXPECT_LT(at[1].get<double>(), 40.0);
+}
+
 // A plant by itself: a part's kind by the mouse, saved beside the plant.
 TEST_F(EditorInAWindow, SetsWhatAPlantsPartsTurnInto) {
     if (!std::filesystem::exists("/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf"))

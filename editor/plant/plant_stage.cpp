@@ -43,6 +43,7 @@ Status PlantStage::show(const Plant& plant, const std::map<uint32_t, float>& imp
     levels.cells = cells;
     Scene scene;
     scene.path = plant.name;
+    scene.light.haze_density_per_m = 0.0f;  // the viewer is far away
     scene.models = {{k_all_triangles, "", 0, k_enough_importance}, {plant.name, "", 0, 1.0f}};
     COPPICE_CHECK(vegetation_->set_scene(scene, {plant, levels}));
     bounds_m_ = plant.bounds_plant;
@@ -79,6 +80,7 @@ Result<gpu::CommandRing::Frame> PlantStage::begin_frame(gpu::CommandRing& ring, 
     settings_.most_sample_distance_px = settings_.sample_distance_px;
     settings_.view = view.kinds ? RepresentationView::kinds : RepresentationView::lit;
     settings_.shadows = view.shadows ? ShadowKind::clipmap : ShadowKind::none;
+    settings_.shadow_distance_m = 2.0f * away_m + size_m_.y;
     // A view at rest falls to finer levels than the one that is asked for.
     settings_.accumulate_limit = 0;
 

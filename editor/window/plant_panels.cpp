@@ -252,7 +252,7 @@ void draw_plant_panels(Session& session, PlantEditor& plant, PanelState& state) 
     const float middle_px = 0.5f * (free.low_px + free.high_px), quarter_px = 0.24f * (free.high_px - free.low_px);
     label("all triangles", middle_px - quarter_px, size.y - bar_px);
     label(plant.view.own_size ? fmt::format("{:.0f} px", plant.view.height_px)
-                              : fmt::format("as at {:.0f} px, {:.1f} times as large", plant.view.height_px,
+                              : fmt::format("as at {:.0f} px, x {:.1f}", plant.view.height_px,
                                             plant.stage().sample_distance_px()),
           middle_px + quarter_px, size.y - bar_px);
 }

@@ -1,8 +1,9 @@
 // A forest in a host's own Vulkan program, in C11: what embedded_forest.h is in C++, for hosts in C and in languages that speak
 // to C. docs/embedding.md says how to begin, and what holds of command buffer, barriers, depth and slots.
 // Rules: interfaces are found by name and version. Every struct begins with its size, which the caller sets; new members go to
-// the end, nobody touches a member beyond that size, and 0 is always what it was before there was the member. So a program
-// that was built against an older header keeps working. One thread at a time calls a forest, but for questions about stems.
+// the end, where no struct has padding, nobody touches a member beyond that size, and 0 is always what it was before there was the
+// member. So a program that was built against an older header keeps working. What is missing, NULL or a size that nobody set, is
+// COPPICE_BAD_INPUT; questions are answered with nothing then. One thread at a time calls a forest, but for questions about stems.
 #pragma once
 #include <stddef.h>
 #include <stdint.h>
@@ -58,6 +59,7 @@ typedef struct CoppicePicture {
     VkImageLayout color_layout, depth_layout;
     VkFormat depth_format;
     float depth_offset, depth_scale;  // stored is depth_offset + depth_scale / w
+    uint32_t reserved;                // 0
 } CoppicePicture;
 
 typedef struct CoppiceQuality {
@@ -101,6 +103,7 @@ typedef struct CoppicePlant {
     float scale;         // 0: 1
     float turn_rad;      // about its stem
     uint32_t seed;
+    uint32_t reserved;  // 0
 } CoppicePlant;
 
 typedef struct CoppiceHit {
@@ -116,6 +119,7 @@ typedef struct CoppiceStem {
     uint32_t plant;
     double foot[3], head[3];
     float radius_m;
+    uint32_t reserved;  // 0
 } CoppiceStem;
 
 typedef struct CoppiceForestInterface {
@@ -148,7 +152,8 @@ typedef struct CoppiceForestInterface {
     void (*first_hit)(const CoppiceForest* forest, const double from[3], const float direction[3],
                       float most_distance_m, CoppiceHit* hit);
     void (*nearest_stem)(const CoppiceForest* forest, const double at[3], float within_m, CoppiceHit* hit);
-    // How many touch the box; as many of them as there is room for are written, `stride_bytes` apart.
+    // How many touch the box; as many of them as there is room for are written, `stride_bytes` apart, which is the caller's
+    // sizeof(CoppiceStem). SIZE_MAX: memory did not suffice.
     size_t (*stems_in_box)(const CoppiceForest* forest, const double least[3], const double most[3],
                            CoppiceStem* stems, size_t room, size_t stride_bytes);
 } CoppiceForestInterface;

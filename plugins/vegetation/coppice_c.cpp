@@ -2,9 +2,11 @@
 #include "plugins/vegetation/coppice.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstring>
 #include <exception>
 #include <new>
+#include <stdexcept>
 #include "plugins/vegetation/embedded_forest.h"
 
 struct CoppiceForest {
@@ -16,16 +18,39 @@ namespace {
 
 thread_local std::string g_message;
 
+// New members go to the end, and must not come to lie in what older programs left undefined.
+static_assert(offsetof(CoppicePicture, reserved) + sizeof(uint32_t) == sizeof(CoppicePicture));
+static_assert(offsetof(CoppicePlant, reserved) + sizeof(uint32_t) == sizeof(CoppicePlant));
+static_assert(offsetof(CoppiceStem, reserved) + sizeof(uint32_t) == sizeof(CoppiceStem));
+static_assert(offsetof(CoppiceCamera, position) + 3 * sizeof(double) == sizeof(CoppiceCamera));
+static_assert(offsetof(CoppiceQuality, without_shadows) + sizeof(uint32_t) == sizeof(CoppiceQuality));
+static_assert(offsetof(CoppiceReport, cpu_ms) + sizeof(float) == sizeof(CoppiceReport));
+static_assert(offsetof(CoppiceHit, normal) + 3 * sizeof(float) == sizeof(CoppiceHit));
+static_assert(offsetof(CoppiceLight, haze_density_per_m) + sizeof(float) == sizeof(CoppiceLight));
+
+// What a caller forgot: guarded() makes an answer of it.
+template <class T>
+T& required(T* given, const char* name) {
+    if (!given) throw std::invalid_argument(std::string(name) + " is NULL");
+    return *given;
+}
+
 // As much as the caller has of it; the rest is 0, or as `taken` came.
 template <class T>
 T take(const T* given, T taken = {}) {
-    if (given) std::memcpy(&taken, given, std::min<size_t>(given->size_bytes, sizeof(T)));
+    if (!given) return taken;
+    if (given->size_bytes < sizeof given->size_bytes)
+        throw std::invalid_argument("a struct without its size: set size_bytes to its sizeof");
+    std::memcpy(&taken, given, std::min<size_t>(given->size_bytes, sizeof(T)));
     return taken;
 }
 
 // As much as the caller has room for.
 template <class T>
 void give(T result, T* to) {
+    required(to, "the answer's struct");
+    if (to->size_bytes < sizeof to->size_bytes)
+        throw std::invalid_argument("a struct without its size: set size_bytes to its sizeof");
     result.size_bytes = to->size_bytes;
     std::memcpy(to, &result, std::min<size_t>(result.size_bytes, sizeof(T)));
 }
@@ -54,6 +79,17 @@ int result_of(const Result<T>& result) {
     return result ? int(COPPICE_DONE) : failed(result.error());
 }
 
+void note(const char* words) noexcept {
+    try {
+        g_message = words;
+    } catch (...) {
+        g_message = "out of memory";
+    }
+}
+
+EmbeddedForest& of(CoppiceForest* forest) { return *required(forest, "forest").forest; }
+const EmbeddedForest& of(const CoppiceForest* forest) { return *required(forest, "forest").forest; }
+
 // work() -> int
 template <class Work>
 int guarded(Work&& work) noexcept {
@@ -61,12 +97,16 @@ int guarded(Work&& work) noexcept {
         g_message.clear();
         return work();
     } catch (const std::bad_alloc&) {
+        g_message = "out of memory";  // as short as strings that allocate nothing
         return COPPICE_LIMIT_EXCEEDED;
+    } catch (const std::invalid_argument& wrong) {
+        note(wrong.what());
+        return COPPICE_BAD_INPUT;
     } catch (const std::exception& thrown) {
-        try {
-            g_message = thrown.what();
-        } catch (...) {
-        }
+        note(thrown.what());
+        return COPPICE_FAILED;
+    } catch (...) {  // of the host's own
+        g_message = "unknown";
         return COPPICE_FAILED;
     }
 }
@@ -111,7 +151,7 @@ FrameSettings settings_of(const CoppiceQuality* given) {
 }
 
 Placement placement_of(const CoppicePlant* given) {
-    const CoppicePlant plant = take(given);
+    const CoppicePlant plant = take(&required(given, "plant"));
     return {place_of(plant.position),
             or_default(plant.scale, 1.0f),
             pack_turn_about_y(plant.turn_rad),
@@ -129,9 +169,9 @@ CoppiceHit hit_of(const StemHit& found) {
 const char* message() { return g_message.c_str(); }
 
 int create(const CoppiceForestSettings* given, CoppiceForest** forest) {
-    *forest = nullptr;
     return guarded([&] {
-        const CoppiceForestSettings taken = take(given);
+        required(forest, "forest") = nullptr;
+        const CoppiceForestSettings taken = take(&required(given, "settings"));
         EmbeddedForestSettings settings;
         settings.device = {taken.instance, taken.physical_device, taken.device, VK_NULL_HANDLE,
                            taken.queue_family};
@@ -148,23 +188,29 @@ int create(const CoppiceForestSettings* given, CoppiceForest** forest) {
     });
 }
 
-void destroy(CoppiceForest* forest) { delete forest; }
+void destroy(CoppiceForest* forest) {
+    guarded([&] {
+        delete forest;
+        return int(COPPICE_DONE);
+    });
+}
 
 int record(CoppiceForest* forest, const CoppiceFrame* given) {
     return guarded([&] {
-        const CoppiceFrame frame = take(given);
-        return result_of(forest->forest->record({frame.commands, frame.slot, camera_of(frame.camera),
+        const CoppiceFrame frame = take(&required(given, "frame"));
+        required(frame.commands, "frame->commands");
+        return result_of(of(forest).record({frame.commands, frame.slot, camera_of(frame.camera),
                                                  settings_of(frame.quality), picture_of(frame.picture)}));
     });
 }
 
 int resize(CoppiceForest* forest, uint32_t width, uint32_t height) {
-    return guarded([&] { return result_of(forest->forest->resize(width, height)); });
+    return guarded([&] { return result_of(of(forest).resize(width, height)); });
 }
 
 int set_light(CoppiceForest* forest, const CoppiceLight* given) {
     return guarded([&] {
-        Light light = forest->forest->scene().light;
+        Light light = of(forest).scene().light;
         CoppiceLight taken{};
         put(taken.direction_to_sun, light.direction_to_sun);
         put(taken.sun_color, light.sun_color);
@@ -173,7 +219,7 @@ int set_light(CoppiceForest* forest, const CoppiceLight* given) {
         put(taken.ground_color, light.ground_color);
         put(taken.haze_color, light.haze_color);
         taken.haze_density_per_m = light.haze_density_per_m;
-        taken = take(given, taken);
+        taken = take(&required(given, "light"), taken);
         light.direction_to_sun = vector_of(taken.direction_to_sun);
         light.sun_color = vector_of(taken.sun_color);
         light.sky_zenith_color = vector_of(taken.sky_zenith_color);
@@ -181,99 +227,120 @@ int set_light(CoppiceForest* forest, const CoppiceLight* given) {
         light.ground_color = vector_of(taken.ground_color);
         light.haze_color = vector_of(taken.haze_color);
         light.haze_density_per_m = taken.haze_density_per_m;
-        forest->forest->vegetation().set_light(light);
+        of(forest).vegetation().set_light(light);
         return int(COPPICE_DONE);
     });
 }
 
 void set_frame_ms(CoppiceForest* forest, uint32_t slot, double ms) {
     guarded([&] {
-        forest->forest->vegetation().set_frame_ms(slot, ms);
+        of(forest).vegetation().set_frame_ms(slot, ms);
         return int(COPPICE_DONE);
     });
 }
 
 void report(const CoppiceForest* forest, CoppiceReport* to) {
-    const FrameReport& of = forest->forest->report();
-    give(CoppiceReport{0, of.plants_visible, of.plants, of.triangles, of.lines, of.points, of.leaves,
-                       of.vertices, of.gpu_bytes, of.sample_distance_px,
-                       float(of.cull_ms + of.lod_ms + of.write_ms)},
-         to);
+    guarded([&] {
+        const FrameReport& drawn = of(forest).report();
+        give(CoppiceReport{0, drawn.plants_visible, drawn.plants, drawn.triangles, drawn.lines, drawn.points, drawn.leaves,
+                           drawn.vertices, drawn.gpu_bytes, drawn.sample_distance_px,
+                           float(drawn.cull_ms + drawn.lod_ms + drawn.write_ms)},
+             to);
+        return int(COPPICE_DONE);
+    });
 }
 
 void scene_camera(const CoppiceForest* forest, double time_s, CoppiceCamera* to) {
-    const Camera camera = camera_at(forest->forest->scene().camera_path, time_s);
-    CoppiceCamera result{};
-    result.vertical_fov_rad = camera.vertical_fov_rad;
-    result.near_m = camera.near_m;
-    put(result.forward, camera.forward());
-    put(result.up, camera.up());
-    put(result.position, camera.position_world);
-    give(result, to);
+    guarded([&] {
+        const Camera camera = camera_at(of(forest).scene().camera_path, time_s);
+        CoppiceCamera result{};
+        result.vertical_fov_rad = camera.vertical_fov_rad;
+        result.near_m = camera.near_m;
+        put(result.forward, camera.forward());
+        put(result.up, camera.up());
+        put(result.position, camera.position_world);
+        give(result, to);
+        return int(COPPICE_DONE);
+    });
 }
 
 int reload_if_changed(CoppiceForest* forest, uint32_t* changed) {
-    *changed = 0;
     return guarded([&] {
-        const Result<bool> reloaded = forest->forest->reload_if_changed();
+        required(changed, "changed") = 0;
+        const Result<bool> reloaded = of(forest).reload_if_changed();
         if (reloaded) *changed = *reloaded;
         return result_of(reloaded);
     });
 }
 
-uint32_t model_count(const CoppiceForest* forest) { return uint32_t(forest->forest->scene().models.size()); }
+uint32_t model_count(const CoppiceForest* forest) {
+    return forest ? uint32_t(forest->forest->scene().models.size()) : 0;
+}
 
 const char* model_name(const CoppiceForest* forest, uint32_t model) {
+    if (!forest) return nullptr;
     const auto& models = forest->forest->scene().models;
     return model < models.size() ? models[model].name.c_str() : nullptr;
 }
 
 int add_plant(CoppiceForest* forest, const CoppicePlant* plant, uint32_t* number) {
     return guarded([&] {
-        const Result<uint32_t> added = forest->forest->plants().add(placement_of(plant));
-        if (added) *number = *added;
+        uint32_t& to = required(number, "number");
+        const Result<uint32_t> added = of(forest).plants().add(placement_of(plant));
+        if (added) to = *added;
         return result_of(added);
     });
 }
 
 int move_plant(CoppiceForest* forest, uint32_t number, const CoppicePlant* plant) {
-    return guarded([&] { return result_of(forest->forest->plants().move(number, placement_of(plant))); });
+    return guarded([&] { return result_of(of(forest).plants().move(number, placement_of(plant))); });
 }
 
 int remove_plant(CoppiceForest* forest, uint32_t number) {
-    return guarded([&] { return result_of(forest->forest->plants().remove(number)); });
+    return guarded([&] { return result_of(of(forest).plants().remove(number)); });
 }
 
 void first_hit(const CoppiceForest* forest, const double from[3], const float direction[3],
                float most_distance_m, CoppiceHit* hit) {
-    give(hit_of(forest->forest->stems().first_hit(place_of(from), vector_of(direction), most_distance_m)),
-         hit);
+    guarded([&] {
+        give(hit_of({}), hit);
+        give(hit_of(of(forest).stems().first_hit(place_of(&required(from, "from")), vector_of(&required(direction, "direction")),
+                                                 most_distance_m)),
+             hit);
+        return int(COPPICE_DONE);
+    });
 }
 
 void nearest_stem(const CoppiceForest* forest, const double at[3], float within_m, CoppiceHit* hit) {
-    give(hit_of(forest->forest->stems().nearest(place_of(at), within_m)), hit);
+    guarded([&] {
+        give(hit_of({}), hit);
+        give(hit_of(of(forest).stems().nearest(place_of(&required(at, "at")), within_m)), hit);
+        return int(COPPICE_DONE);
+    });
 }
 
 size_t stems_in_box(const CoppiceForest* forest, const double least[3], const double most[3],
                     CoppiceStem* stems, size_t room, size_t stride_bytes) {
     size_t count = 0;
-    guarded([&] {
+    const int result = guarded([&] {
         std::vector<Stem> found;
-        forest->forest->stems().in_box(place_of(least), place_of(most), found);
+        of(forest).stems().in_box(place_of(&required(least, "least")), place_of(&required(most, "most")), found);
+        if (!stems || stride_bytes < sizeof(uint32_t)) room = 0;
         count = found.size();
         for (size_t i = 0; i < std::min(room, count); ++i) {
             CoppiceStem stem{uint32_t(std::min(stride_bytes, sizeof(CoppiceStem))),
                              found[i].plant,
                              {},
                              {},
-                             found[i].radius_m};
+                             found[i].radius_m,
+                             0};
             put(stem.foot, found[i].foot_world);
             put(stem.head, found[i].head_world);
             std::memcpy(reinterpret_cast<std::byte*>(stems) + i * stride_bytes, &stem, stem.size_bytes);
         }
         return int(COPPICE_DONE);
     });
-    return count;
+    return result == COPPICE_LIMIT_EXCEEDED ? SIZE_MAX : count;
 }
 
 constexpr CoppiceForestInterface k_interface{sizeof(CoppiceForestInterface),

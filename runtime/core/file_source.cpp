@@ -2,6 +2,8 @@
 
 #include <cerrno>
 #include <cstring>
+#include <exception>
+#include <vector>
 #include <fcntl.h>
 #include <span>
 #include <sys/mman.h>
@@ -28,6 +30,15 @@ Result<int> file_in_memory(const std::string& path, std::span<const std::byte> b
     return fail(ErrorId::file_unreadable, path, "", std::strerror(why), "free some memory");
 }
 
+// A host's function may throw; what reads files does not.
+Result<std::vector<std::byte>> given_by_source(const std::string& path) try {
+    return g_source(g_context, path);
+} catch (const std::exception& thrown) {
+    return fail(ErrorId::file_unreadable, path, "", thrown.what(), "the host's file source threw it");
+} catch (...) {
+    return fail(ErrorId::file_unreadable, path, "", "unknown", "the host's file source threw it");
+}
+
 }  // namespace
 
 void set_file_source(FileSource source, void* context) {
@@ -37,7 +48,7 @@ void set_file_source(FileSource source, void* context) {
 
 Result<int> open_to_read(const std::string& path) {
     if (g_source) {
-        auto given = g_source(g_context, path);
+        auto given = given_by_source(path);
         if (given) return file_in_memory(path, *given);
         if (given.error().id != ErrorId::file_missing) return fail(std::move(given.error()));
     }

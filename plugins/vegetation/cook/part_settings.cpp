@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <filesystem>
 #include "plugins/shared/json_object.h"
 #include "runtime/core/file.h"
 #include "runtime/core/hash.h"
@@ -62,10 +61,10 @@ Result<std::vector<PartSettings>> parse_part_settings(std::string_view json, con
 
 Result<std::vector<PartSettings>> read_part_settings(const std::string& plant_path) {
     const std::string path = part_settings_path(plant_path);
-    std::error_code ignored;
-    if (!std::filesystem::exists(path, ignored)) return std::vector<PartSettings>();
-    COPPICE_TRY(const std::string json, read_text_file(path, k_file_limit_bytes));
-    return parse_part_settings(json, path);
+    auto json = read_text_file(path, k_file_limit_bytes);
+    if (json) return parse_part_settings(*json, path);
+    if (json.error().id == ErrorId::file_missing) return std::vector<PartSettings>();
+    return fail(std::move(json.error()));
 }
 
 uint64_t hash_part_settings(const std::vector<PartSettings>& parts) {

@@ -34,8 +34,10 @@ void drop_dominated(std::vector<Competitor>& living) {
                 const auto found = cells.find({x + dx, z + dz});
                 if (found == cells.end()) continue;
                 for (uint32_t other : found->second)
-                    if (glm::length(left[other].at - each.at) < left[other].radius_m + each.radius_m)
+                    if (glm::length(left[other].at - each.at) < left[other].radius_m + each.radius_m) {
                         dominated = true;
+                        break;
+                    }
             }
         if (dominated) continue;
         cells[{x, z}].push_back(uint32_t(left.size()));
@@ -49,7 +51,13 @@ void drop_dominated(std::vector<Competitor>& living) {
 std::vector<Competitor> compete(std::vector<Competitor> living, uint32_t steps, double growth) {
     drop_dominated(living);
     for (uint32_t step = 0; step < steps; ++step) {
-        for (Competitor& each : living) each.radius_m = std::min(each.radius_m * (1.0 + growth), each.radius_most_m);
+        bool grew = false;
+        for (Competitor& each : living) {
+            const double radius_m = std::min(each.radius_m * (1.0 + growth), each.radius_most_m);
+            grew = grew || radius_m != each.radius_m;
+            each.radius_m = radius_m;
+        }
+        if (!grew) break;  // and so on for ever
         drop_dominated(living);
     }
     return living;

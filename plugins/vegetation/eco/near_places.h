@@ -11,18 +11,16 @@ using glm::dvec2;
 
 class NearPlaces {
   public:
-    // Requires finite places within 1e8 m, and a distance from 0.001 to 1e5 m.
+    // Requires finite places.
     NearPlaces(std::span<const dvec2> places, double distance_m);
-    // Whether one of the places is nearer.
-    bool contains(dvec2 p) const;
+    // Whether one of the places is nearer. Time goes with the logarithm of the places, and with the root where many are nearly as far.
+    bool contains(dvec2 p) const { return contains(0, tree_.size(), 0, p); }
 
   private:
-    struct Cell {
-        int64_t row, column;
-        dvec2 place;
-    };
+    void sort(size_t first, size_t end, int axis);
+    bool contains(size_t first, size_t end, int axis, dvec2 p) const;
     double distance_m_;
-    std::vector<Cell> cells_;  // squares of that distance, by rows
+    std::vector<dvec2> tree_;  // the middle of each range parts it, by x and z in turn
 };
 
 }  // namespace coppice

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <span>
 #include <fmt/format.h>
 #include "plugins/vegetation/eco/camera_path.h"
@@ -235,7 +236,10 @@ class SceneReader {
             COPPICE_CHECK(document_.status());
             if (of == k_scatter) continue;
             // One that cannot be read is reported when its turn comes.
-            if (const auto plants = read_fixed(placements_[later], of)) keep(*plants);
+            const auto [fixed, is_new] = fixed_.try_emplace(later);
+            if (is_new)
+                if (auto plants = read_fixed(placements_[later], of)) fixed->second = std::move(*plants);
+            keep(fixed->second);
             COPPICE_CHECK(document_.status());
         }
         return places;
@@ -345,6 +349,7 @@ class SceneReader {
     std::vector<Population> populations_;
     std::vector<JsonObject> placements_;
     size_t next_placement_ = 0;  // the one that is read
+    std::map<size_t, std::vector<Placement>> fixed_;  // those behind it that rules asked for
     uint64_t plant_count_ = 0;
 };
 
